@@ -1,0 +1,52 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpVlpRig_h
+#define vpVlpRig_h
+
+#include <string>
+
+#include <Eigen/Core>
+#include <visp3/core/vpCameraParameters.h>
+#include <visp3/core/vpHomogeneousMatrix.h>
+#include <visp3/vlp_core/vpRollingShutter.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  The camera as it sits on the robot: what a rig.yaml says.
+*/
+struct VISP_EXPORT vpVlpRig {
+  std::string cameraFile;         // ViSP XML that the parameters came from, path as written in the rig file
+  std::string cameraName;         // name of the camera in that XML
+  vpCameraParameters camera;      // of the picture as delivered
+  unsigned int width = 0;         // pixels of the picture as delivered
+  unsigned int height = 0;
+  vpRollingShutter shutter;
+  vpPictureResize resize;
+  vpHomogeneousMatrix bMc;        // camera in the robot base frame
+  Eigen::Vector3d translationSigma = Eigen::Vector3d::Zero(); // m
+  Eigen::Vector3d rotationSigma = Eigen::Vector3d::Zero();    // rad, of roll, pitch, yaw
+
+  vpLineTiming lineTiming() const { return vpLineTiming(shutter, resize, width, height); }
+
+  //! Where row_time_sigma_s is left out: an uncalibrated row time, this share of it.
+  static constexpr double uncalibratedRowTime = 0.01;
+
+  /*!
+    Reads a rig.yaml and the camera XML that it names (relative to the rig file).
+    \throw vpException with one line that names file, line, field, what came and what was expected.
+  */
+  static vpVlpRig load(const std::string &filename);
+
+  /*!
+    Writes a rig.yaml that load() reads back, and beside it the camera XML of `cameraFile`. Both to temporary names
+    first, then renamed.
+  */
+  void save(const std::string &filename) const;
+};
+
+END_VISP_NAMESPACE
+
+#endif

@@ -1,0 +1,297 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpOutlineModel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <opencv2/imgproc.hpp>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+
+//! Symmetric matrix with the eigenvectors of \e A and f of its eigenvalues.
+template <typename F> Eigen::Matrix2d onEigenvalues(const Eigen::Matrix2d &A, F f)
+{
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(A);
+  const Eigen::Vector2d values = eigen.eigenvalues().unaryExpr(f);
+  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
+
+} // namespace
+
+vpEllipseModel::vpEllipseModel(const Eigen::Vector2d &centre, double a, double b, double angle) : m_centre(centre)
+{
+  Eigen::Matrix2d R;
+  R << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  m_shape = R * Eigen::Vector2d(1 / a, 1 / b).asDiagonal() * R.transpose();
+}
+
+vpEllipseModel vpEllipseModel::from(const std::vector<cv::Point2f> &points, const cv::Rect &box)
+{
+  if (points.size() >= 6) {
+    const cv::RotatedRect e = cv::fitEllipseDirect(points);
+    const double a = 0.5 * e.size.width;
+    const double b = 0.5 * e.size.height;
+    const vpEllipseModel model({e.center.x, e.center.y}, std::max(a, 1.0), std::max(b, 1.0), e.angle * M_PI / 180);
+    const double ratio = a / b;
+    if (ratio > 0.4 && ratio < 2.5 && model.plausible(box)) {
+      return model;
+    }
+  }
+  const Eigen::Vector2d middle(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
+  const double radius = 0.5 * std::max(box.width, box.height);
+  return vpEllipseModel(middle, radius, radius, 0);
+}
+
+double vpEllipseModel::distance(const Eigen::Vector2d &x, Vector &derivative) const
+{
+  const Eigen::Vector2d y = m_shape * (x - m_centre);
+  const double rho = std::max(y.norm(), 1e-6);
+  const Eigen::Vector2d normal = m_shape * y;
+  const double slope = std::max(normal.norm(), 1e-12); // |gradient of rho| times rho
+  derivative << -normal / slope, -rho * rho / slope, -0.5 * (y.x() * y.x() - y.y() * y.y()) / slope,
+      -y.x() * y.y() / slope;
+  return (rho - 1) * rho / slope;
+}
+
+void vpEllipseModel::advance(const Vector &step)
+{
+  m_centre += step.head<2>();
+  Eigen::Matrix2d E;
+  E << step(3), step(4), step(4), -step(3);
+  const Eigen::Matrix2d M = std::exp(-step(2)) * onEigenvalues(E, [](double e) { return std::exp(-0.5 * e); }) * m_shape;
+  m_shape = onEigenvalues(M.transpose() * M, [](double e) { return std::sqrt(std::max(e, 1e-12)); });
+}
+
+void vpEllipseModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
+{
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(m_shape);
+  const double logRatio = std::log(eigen.eigenvalues()(1) / eigen.eigenvalues()(0)); // log(a / b)
+  const Eigen::Vector2d major = eigen.eigenvectors().col(0);
+  const double cos2 = major.x() * major.x() - major.y() * major.y();
+  const double sin2 = 2 * major.x() * major.y();
+  const double weight = 1 / (sigma * sigma);
+  H(3, 3) += weight;
+  H(4, 4) += weight;
+  g(3) -= weight * logRatio * cos2;
+  g(4) -= weight * logRatio * sin2;
+}
+
+bool vpEllipseModel::stretch(double v, double distance, double &first, double &last) const
+{
+  const double grow = 1 + distance / radius();
+  if (grow <= 0) {
+    return false;
+  }
+  // |m_shape (x - centre)| = grow with x = (u, v) fixed in v: a quadratic in u.
+  const Eigen::Vector2d p = m_shape.col(0);
+  const Eigen::Vector2d q = m_shape.col(1) * (v - m_centre.y());
+  const double a = p.squaredNorm();
+  const double b = p.dot(q);
+  const double discriminant = b * b - a * (q.squaredNorm() - grow * grow);
+  if (discriminant <= 0) {
+    return false;
+  }
+  first = m_centre.x() + (-b - std::sqrt(discriminant)) / a;
+  last = m_centre.x() + (-b + std::sqrt(discriminant)) / a;
+  return true;
+}
+
+void vpEllipseModel::vertical(double &top, double &bottom) const
+{
+  const double half = std::sqrt((m_shape * m_shape).inverse()(1, 1));
+  top = m_centre.y() - half;
+  bottom = m_centre.y() + half;
+}
+
+double vpEllipseModel::radius() const { return 1 / std::sqrt(std::max(m_shape.determinant(), 1e-12)); }
+
+bool vpEllipseModel::plausible(const cv::Rect &box) const
+{
+  const double size = std::max(box.width, box.height);
+  const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(m_shape);
+  const double a = 1 / eigen.eigenvalues()(0);
+  const double b = 1 / eigen.eigenvalues()(1);
+  return std::isfinite(a) && std::isfinite(b) && a < 3 * size && b > 0.2 * std::min(box.width, box.height) &&
+         a < 4 * b && (m_centre - middle).norm() < 1.5 * size;
+}
+
+vpLampOutline vpEllipseModel::outline(const Eigen::MatrixXd &covariance) const
+{
+  vpLampOutline outline;
+  outline.shape = vpLampOutline::Shape::ellipse;
+  outline.centre = m_centre;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(m_shape);
+  outline.a = 1 / eigen.eigenvalues()(0);
+  outline.b = 1 / eigen.eigenvalues()(1);
+  outline.angle = std::atan2(eigen.eigenvectors()(1, 0), eigen.eigenvectors()(0, 0));
+  outline.centreCovariance = covariance.topLeftCorner<2, 2>();
+  return outline;
+}
+
+vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &points)
+{
+  const cv::RotatedRect r = cv::minAreaRect(points);
+  vpQuadrilateralModel model;
+  model.m_inside = Eigen::Vector2d(r.center.x, r.center.y);
+  model.m_scale = 0.25 * (r.size.width + r.size.height);
+  for (int i = 0; i < 4; ++i) {
+    model.m_angle[i] = r.angle * M_PI / 180 + i * M_PI / 2;
+    model.m_offset[i] = 0.5 * (i % 2 == 0 ? r.size.width : r.size.height);
+  }
+  return model;
+}
+
+double vpQuadrilateralModel::distance(const Eigen::Vector2d &x, Vector &derivative) const
+{
+  const Eigen::Vector2d d = x - m_inside;
+  double farthest = -std::numeric_limits<double>::max();
+  int side = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double distance = std::cos(m_angle[i]) * d.x() + std::sin(m_angle[i]) * d.y() - m_offset[i];
+    if (distance > farthest) {
+      farthest = distance;
+      side = i;
+    }
+  }
+  derivative.setZero();
+  derivative(2 * side) = (-std::sin(m_angle[side]) * d.x() + std::cos(m_angle[side]) * d.y()) / m_scale;
+  derivative(2 * side + 1) = -1;
+  return farthest;
+}
+
+void vpQuadrilateralModel::advance(const Vector &step)
+{
+  for (int i = 0; i < 4; ++i) {
+    m_angle[i] = wrapped(m_angle[i] + step(2 * i) / m_scale);
+    m_offset[i] += step(2 * i + 1);
+  }
+}
+
+void vpQuadrilateralModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
+{
+  auto pull = [&](const Vector &direction, double value, double deviation) {
+    const double weight = 1 / (deviation * deviation);
+    H.topLeftCorner<parameters, parameters>() += weight * direction * direction.transpose();
+    g.head<parameters>() -= weight * value * direction;
+  };
+  for (int i = 0; i < 4; ++i) { // neighbouring sides at right angles
+    const int j = (i + 1) % 4;
+    Vector direction = Vector::Zero();
+    direction(2 * i) = -1;
+    direction(2 * j) = 1;
+    pull(direction, m_scale * wrapped(m_angle[j] - m_angle[i] - M_PI / 2), sigma * m_scale);
+  }
+  Vector direction = Vector::Zero(); // as high as wide
+  direction(1) = direction(5) = 0.5;
+  direction(3) = direction(7) = -0.5;
+  pull(direction, 0.5 * (m_offset[0] + m_offset[2] - m_offset[1] - m_offset[3]), sigma * m_scale);
+  for (int axis = 0; axis < 2; ++axis) { // somewhere about where it was found
+    direction.setZero();
+    direction(1 + 2 * axis) = 0.5;
+    direction(5 + 2 * axis) = -0.5;
+    pull(direction, 0.5 * (m_offset[axis] - m_offset[axis + 2]), m_scale);
+  }
+}
+
+bool vpQuadrilateralModel::stretch(double v, double distance, double &first, double &last) const
+{
+  first = -1e9;
+  last = 1e9;
+  for (int i = 0; i < 4; ++i) {
+    const double c = std::cos(m_angle[i]);
+    const double limit = m_offset[i] + distance - std::sin(m_angle[i]) * (v - m_inside.y());
+    if (std::abs(c) < 1e-6) {
+      if (limit < 0) {
+        return false;
+      }
+    } else if (c > 0) {
+      last = std::min(last, m_inside.x() + limit / c);
+    } else {
+      first = std::max(first, m_inside.x() + limit / c);
+    }
+  }
+  return first < last;
+}
+
+std::array<Eigen::Vector2d, 4> vpQuadrilateralModel::cornersAt(const Vector &step) const
+{
+  std::array<Eigen::Vector2d, 4> corners;
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    Eigen::Matrix2d normals;
+    Eigen::Vector2d offsets;
+    for (int k = 0; k < 2; ++k) {
+      const int side = k == 0 ? i : j;
+      const double angle = m_angle[side] + step(2 * side) / m_scale;
+      normals.row(k) << std::cos(angle), std::sin(angle);
+      offsets(k) = m_offset[side] + step(2 * side + 1);
+    }
+    corners[i] = m_inside + normals.inverse() * offsets;
+  }
+  return corners;
+}
+
+void vpQuadrilateralModel::vertical(double &top, double &bottom) const
+{
+  const auto corners = cornersAt(Vector::Zero());
+  top = bottom = corners[0].y();
+  for (const Eigen::Vector2d &corner : corners) {
+    top = std::min(top, corner.y());
+    bottom = std::max(bottom, corner.y());
+  }
+}
+
+double vpQuadrilateralModel::radius() const { return m_scale; }
+
+bool vpQuadrilateralModel::plausible(const cv::Rect &box) const
+{
+  const double size = std::max(box.width, box.height);
+  const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+  for (int i = 0; i < 4; ++i) {
+    if (std::abs(wrapped(m_angle[(i + 1) % 4] - m_angle[i] - M_PI / 2)) > M_PI / 4) {
+      return false;
+    }
+  }
+  for (const Eigen::Vector2d &corner : cornersAt(Vector::Zero())) {
+    if (!corner.allFinite() || (corner - middle).norm() > 2 * size) {
+      return false;
+    }
+  }
+  return m_offset[0] + m_offset[2] > 2 && m_offset[1] + m_offset[3] > 2;
+}
+
+vpLampOutline vpQuadrilateralModel::outline(const Eigen::MatrixXd &covariance) const
+{
+  auto crossing = [](const std::array<Eigen::Vector2d, 4> &c) {
+    Eigen::Matrix2d diagonals;
+    diagonals << c[2] - c[0], c[1] - c[3];
+    return Eigen::Vector2d(c[0] + (c[2] - c[0]) * (diagonals.inverse() * (c[1] - c[0]))(0));
+  };
+  vpLampOutline outline;
+  outline.shape = vpLampOutline::Shape::quadrilateral;
+  outline.corners = cornersAt(Vector::Zero());
+  outline.centre = crossing(outline.corners);
+  outline.a = outline.b = m_scale;
+  outline.angle = m_angle[0];
+  Eigen::Matrix<double, 2, parameters> J;
+  static const double h = 1e-4;
+  for (int i = 0; i < parameters; ++i) {
+    J.col(i) = (crossing(cornersAt(h * Vector::Unit(i))) - crossing(cornersAt(-h * Vector::Unit(i)))) / (2 * h);
+  }
+  outline.centreCovariance = J * covariance.topLeftCorner<parameters, parameters>() * J.transpose();
+  return outline;
+}
+
+END_VISP_NAMESPACE

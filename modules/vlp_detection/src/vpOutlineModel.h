@@ -1,0 +1,79 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpOutlineModel_h
+#define vpOutlineModel_h
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <visp3/vlp_core/vpLampObservation.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  Outlines as the fitter sees them: a signed distance (negative inside), its derivatives, and the stretch of a line within some
+  distance of the edge. Steps are local: advance() moves the outline by a small step of its own parameters.
+*/
+class vpEllipseModel
+{
+public:
+  static constexpr int parameters = 5; // centre u, v (px); log size; two components of log(a / b)
+  using Vector = Eigen::Matrix<double, parameters, 1>;
+
+  //! From an ellipse with semi-axes a, b along \e angle.
+  vpEllipseModel(const Eigen::Vector2d &centre, double a, double b, double angle);
+  //! Best ellipse of points on the outline; a circle about \e box where they allow none.
+  static vpEllipseModel from(const std::vector<cv::Point2f> &points, const cv::Rect &box);
+
+  double distance(const Eigen::Vector2d &x, Vector &derivative) const;
+  void advance(const Vector &step);
+  //! Weak prior towards a circle, added to normal equations H step = g.
+  void addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
+  //! Range of samples on line \e v at most \e distance outside (inside where negative) the outline; false: none.
+  bool stretch(double v, double distance, double &first, double &last) const;
+  void vertical(double &top, double &bottom) const;
+  double radius() const;
+  bool plausible(const cv::Rect &box) const;
+  //! \param H Information matrix of the parameters, px and log units.
+  vpLampOutline outline(const Eigen::MatrixXd &covariance) const;
+
+private:
+  Eigen::Vector2d m_centre;
+  Eigen::Matrix2d m_shape; // symmetric; |m_shape (x - m_centre)| = 1 on the outline
+};
+
+//! Four straight sides, each by the angle of its outward normal and its distance from a fixed point inside.
+class vpQuadrilateralModel
+{
+public:
+  static constexpr int parameters = 8; // of each side: normal's angle (in px at half the mean side), distance (px)
+  using Vector = Eigen::Matrix<double, parameters, 1>;
+
+  static vpQuadrilateralModel from(const std::vector<cv::Point2f> &points);
+
+  double distance(const Eigen::Vector2d &x, Vector &derivative) const;
+  void advance(const Vector &step);
+  //! Weak prior towards a square seen from about below.
+  void addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
+  bool stretch(double v, double distance, double &first, double &last) const;
+  void vertical(double &top, double &bottom) const;
+  double radius() const;
+  bool plausible(const cv::Rect &box) const;
+  vpLampOutline outline(const Eigen::MatrixXd &covariance) const;
+
+private:
+  std::array<Eigen::Vector2d, 4> cornersAt(const Vector &step) const;
+
+  Eigen::Vector2d m_inside;
+  double m_scale = 1; // px, half the mean side
+  std::array<double, 4> m_angle{};
+  std::array<double, 4> m_offset{};
+};
+
+END_VISP_NAMESPACE
+
+#endif

@@ -1,0 +1,228 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpLampGeometry.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const double leastDepth = 1e-6; // m in front of the camera, and share of a unit ray above the horizon
+
+Eigen::Matrix3d cross(const Eigen::Vector3d &v)
+{
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+void fromVisp(const vpHomogeneousMatrix &M, Eigen::Matrix3d &R, Eigen::Vector3d &t)
+{
+  for (unsigned int i = 0; i < 3; ++i) {
+    for (unsigned int j = 0; j < 3; ++j)
+      R(i, j) = M[i][j];
+    t(i) = M[i][3];
+  }
+}
+} // namespace
+
+double vpBasePose::tilt() const
+{
+  return std::atan2(std::hypot(wRb(2, 0), wRb(2, 1)), wRb(2, 2));
+}
+
+vpBasePose vpBasePose::moved(const Eigen::Matrix<double, 6, 1> &step) const
+{
+  vpBasePose pose = *this;
+  pose.wtb += step.head<3>();
+  const double angle = step.tail<3>().norm();
+  if (angle > 0)
+    pose.wRb = Eigen::AngleAxisd(angle, step.tail<3>() / angle) * pose.wRb;
+  return pose;
+}
+
+Eigen::Matrix<double, 6, 1> vpBasePose::stepTo(const vpBasePose &pose) const
+{
+  const Eigen::AngleAxisd turn(pose.wRb * wRb.transpose());
+  Eigen::Matrix<double, 6, 1> step;
+  step << pose.wtb - wtb, turn.angle() * turn.axis();
+  return step;
+}
+
+vpHomogeneousMatrix vpBasePose::wMb() const
+{
+  vpHomogeneousMatrix M;
+  for (unsigned int i = 0; i < 3; ++i) {
+    for (unsigned int j = 0; j < 3; ++j)
+      M[i][j] = wRb(i, j);
+    M[i][3] = wtb(i);
+  }
+  return M;
+}
+
+vpBasePose vpBasePose::of(const vpHomogeneousMatrix &wMb)
+{
+  vpBasePose pose;
+  fromVisp(wMb, pose.wRb, pose.wtb);
+  return pose;
+}
+
+vpMountFrame::vpMountFrame(const vpVlpRig &rig)
+    : translationSigma(rig.translationSigma), rotationSigma(rig.rotationSigma)
+{
+  fromVisp(rig.bMc, bRc, btc);
+}
+
+vpPredictedRay predictRay(const Eigen::Vector3d &lamp, const vpBasePose &pose, const vpMountFrame &mount)
+{
+  const Eigen::Vector3d fromBase = lamp - pose.wtb; // in w
+  const Eigen::Matrix3d cRw = (pose.wRb * mount.bRc).transpose();
+  const Eigen::Vector3d c = cRw * fromBase - mount.bRc.transpose() * mount.btc;
+  vpPredictedRay predicted;
+  predicted.inFront = c.z() > leastDepth;
+  if (!predicted.inFront)
+    return predicted;
+  predicted.ray = c.head<2>() / c.z();
+  Eigen::Matrix<double, 2, 3> byPoint;
+  byPoint << 1, 0, -predicted.ray.x(), 0, 1, -predicted.ray.y();
+  byPoint *= cRw / c.z();
+  predicted.derivative << -byPoint, byPoint * cross(fromBase);
+  return predicted;
+}
+
+Eigen::Matrix2d rayDoubt(const vpLampSight &lamp, const vpPredictedRay &predicted)
+{
+  const Eigen::Matrix<double, 2, 3> byPosition = -predicted.derivative.leftCols<3>();
+  return lamp.covariance + lamp.positionSigma * lamp.positionSigma * byPosition * byPosition.transpose();
+}
+
+Eigen::Matrix2d tiltDoubt(const vpBasePose &pose, const vpMountFrame &mount)
+{
+  const Eigen::Matrix2d turn = pose.wRb.topLeftCorner<2, 2>();
+  return turn * mount.rotationSigma.head<2>().cwiseAbs2().asDiagonal() * turn.transpose();
+}
+
+vpMatrix6d mountDoubt(const vpBasePose &pose, const vpMountFrame &mount)
+{
+  Eigen::Matrix<double, 6, 4> byMount = Eigen::Matrix<double, 6, 4>::Zero(); // translation, yaw
+  byMount.topLeftCorner<3, 3>() = -pose.wRb;
+  byMount.topRightCorner<3, 1>() = pose.wRb * Eigen::Vector3d::UnitZ().cross(mount.btc);
+  byMount.bottomRightCorner<3, 1>() = -pose.wRb.col(2);
+  Eigen::Vector4d sigma;
+  sigma << mount.translationSigma, mount.rotationSigma.z();
+  return byMount * sigma.cwiseAbs2().asDiagonal() * byMount.transpose();
+}
+
+vpMatrix6d levelCovariance(const Eigen::MatrixXd &K, const Eigen::MatrixXd &S, const Eigen::MatrixXd &byTilt,
+                           const Eigen::Matrix2d &tilt)
+{
+  const Eigen::Matrix4d estimated = K * S * K.transpose();
+  const Eigen::Matrix<double, 4, 2> withTilt = -K * byTilt * tilt;
+  const int own[4] = {0, 1, 2, 5}; // x, y, z, yaw
+  vpMatrix6d covariance = vpMatrix6d::Zero();
+  covariance.block<2, 2>(3, 3) = tilt;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j)
+      covariance(own[i], own[j]) = (estimated(i, j) + estimated(j, i)) / 2;
+    covariance.block<1, 2>(own[i], 3) = withTilt.row(i);
+    covariance.block<2, 1>(3, own[i]) = withTilt.row(i).transpose();
+  }
+  return covariance;
+}
+
+vpLampPair::vpLampPair(const vpLampSight &first, const vpLampSight &second, const vpMountFrame &mount,
+                       const Eigen::Matrix3d &level)
+    : step(second.position.x() - first.position.x(), second.position.y() - first.position.y()),
+      rise(second.position.z() - first.position.z())
+{
+  const vpLampSight *lamps[2] = {&first, &second};
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector3d up = level * mount.bRc * lamps[k]->ray.homogeneous();
+    aboveHorizon[k] = up.z() > leastDepth * up.norm();
+    if (aboveHorizon[k])
+      ray[k] = {up.x() / up.z(), up.y() / up.z()};
+  }
+}
+
+std::vector<double> vpLampPair::heights(bool &disagree) const
+{
+  const std::complex<double> apart = ray[1] - ray[0];
+  const double a = std::norm(apart); // a H^2 + 2 b H + c = 0
+  const double b = rise * std::real(std::conj(apart) * ray[1]);
+  const double c = rise * rise * std::norm(ray[1]) - std::norm(step);
+  const double discriminant = b * b - a * c;
+  disagree = discriminant < 0;
+  std::vector<double> valid;
+  if (disagree)
+    return valid;
+  for (double root : {std::sqrt(discriminant), -std::sqrt(discriminant)}) {
+    const double H = (root - b) / a;
+    if (H > 0 && H + rise > 0 && (valid.empty() || root < 0))
+      valid.push_back(H);
+  }
+  return valid;
+}
+
+vpBasePose vpLampPair::pose(double H, const vpLampSight &first, const vpMountFrame &mount,
+                            const Eigen::Matrix3d &level) const
+{
+  const double yaw = std::arg(step / (H * (ray[1] - ray[0]) + rise * ray[1]));
+  const std::complex<double> camera =
+      std::complex<double>(first.position.x(), first.position.y()) - std::polar(H, yaw) * ray[0];
+  vpBasePose pose;
+  pose.wRb = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * level;
+  pose.wtb = Eigen::Vector3d(camera.real(), camera.imag(), first.position.z() - H) - pose.wRb * mount.btc;
+  return pose;
+}
+
+std::string sightProblem(const std::vector<vpLampSight> &lamps)
+{
+  for (size_t k = 0; k < lamps.size(); ++k) {
+    const vpLampSight &lamp = lamps[k];
+    const std::string name = "lamp " + lamp.id + ": ";
+    if (!lamp.ray.allFinite())
+      return name + "its ray is not finite";
+    if (!lamp.position.allFinite())
+      return name + "its position in the map is not finite";
+    if (!std::isfinite(lamp.positionSigma) || lamp.positionSigma < 0)
+      return name + "the sigma of its position is not a number of 0 or more";
+    const Eigen::Matrix2d &C = lamp.covariance;
+    if (!C.allFinite() || C(0, 0) < 0 || C(1, 1) < 0 || C.determinant() < -1e-9 * C(0, 0) * C(1, 1))
+      return name + "the covariance of its ray has a negative or non-finite variance";
+    for (size_t before = 0; before < k; ++before)
+      if (lamps[before].id == lamp.id)
+        return "lamp " + lamp.id + " is given twice; a lamp hangs in one place only";
+  }
+  return "";
+}
+
+vpVlpFix refusedFix(const std::string &refusal)
+{
+  vpVlpFix fix;
+  fix.refusal = refusal;
+  return fix;
+}
+
+bool describeFix(vpVlpFix &fix, const std::vector<vpLampSight> &lamps, const vpBasePose &pose,
+                 const vpVlpRig &rig)
+{
+  const vpMountFrame mount(rig);
+  for (const vpLampSight &lamp : lamps) {
+    const vpPredictedRay predicted = predictRay(lamp.position, pose, mount);
+    if (!predicted.inFront)
+      return false;
+    fix.lamps.push_back(lamp.id);
+    fix.residuals.push_back(lamp.ray - predicted.ray);
+  }
+  fix.wMb = pose.wMb();
+  fix.wMc = fix.wMb * rig.bMc;
+  fix.valid = true;
+  return true;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,292 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_localization/vpManyLampSolver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <visp3/vlp_localization/vpTwoLampSolver.h>
+
+#include "vpLampGeometry.h"
+#include "vpRayFit.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+using Minimum = vpRayFit::Minimum;
+
+std::string degrees(double angle)
+{
+  std::ostringstream text;
+  text.precision(3);
+  text << angle * 180 / M_PI << " degrees";
+  return text.str();
+}
+
+// Weights are inverse covariances: a lamp without doubt has none.
+std::string weightProblem(const std::vector<vpLampSight> &lamps)
+{
+  for (const vpLampSight &lamp : lamps) {
+    const Eigen::Matrix2d &C = lamp.covariance;
+    if (!(C(0, 0) > 0 && C(1, 1) > 0 && C.determinant() > 1e-9 * C(0, 0) * C(1, 1)))
+      return "lamp " + lamp.id + ": the covariance of its ray is singular";
+  }
+  return "";
+}
+
+bool onOneLine(const std::vector<vpLampSight> &lamps)
+{
+  Eigen::Matrix3Xd places(3, lamps.size());
+  for (size_t k = 0; k < lamps.size(); ++k)
+    places.col(k) = lamps[k].position;
+  places.colwise() -= places.rowwise().mean().eval();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> scatter;
+  scatter.computeDirect(places * places.transpose(), Eigen::EigenvaluesOnly);
+  const double thinnest = 1e-3; // width over length
+  return scatter.eigenvalues()(1) <= thinnest * thinnest * scatter.eigenvalues()(2);
+}
+
+// The two lamps farthest apart in the picture.
+std::pair<size_t, size_t> widestPair(const std::vector<vpLampSight> &lamps)
+{
+  std::pair<size_t, size_t> widest(0, 1);
+  double apart = 0;
+  for (size_t i = 0; i < lamps.size(); ++i)
+    for (size_t j = i + 1; j < lamps.size(); ++j)
+      if ((lamps[i].ray - lamps[j].ray).norm() > apart) {
+        apart = (lamps[i].ray - lamps[j].ray).norm();
+        widest = {i, j};
+      }
+  return widest;
+}
+
+// Poses to start from whose up direction in b is \e up: the closed form of the widest pair under that
+// attitude.
+std::vector<vpBasePose> posesWithUp(const Eigen::Vector3d &up, const std::vector<vpLampSight> &lamps,
+                                    const vpMountFrame &mount)
+{
+  const auto [i, j] = widestPair(lamps);
+  const Eigen::Vector3d axis(up.y(), -up.x(), 0); // up x z
+  Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
+  if (axis.norm() > 0)
+    level = Eigen::AngleAxisd(std::atan2(axis.norm(), up.z()), axis.normalized());
+  const vpLampPair pair(lamps[i], lamps[j], mount, level);
+  std::vector<vpBasePose> poses;
+  if (!pair.aboveHorizon[0] || !pair.aboveHorizon[1] || !(std::abs(pair.ray[1] - pair.ray[0]) > 0))
+    return poses;
+  bool disagree = false;
+  std::vector<double> heights = pair.heights(disagree);
+  if (heights.empty()) // under a wrong attitude there may be none: as if both hung at one height
+    heights.push_back(std::max(0.0, -pair.rise) + std::abs(pair.step) / std::abs(pair.ray[1] - pair.ray[0]));
+  for (double H : heights)
+    poses.push_back(pair.pose(H, lamps[i], mount, level));
+  return poses;
+}
+
+/*
+  Up directions in b from which a search over all attitudes starts: level, and rings of twelve up to maxTilt.
+  A far denser grid finds a further pose for 3 of 1000 random triples, and for no group of four.
+*/
+std::vector<Eigen::Vector3d> upDirections(double maxTilt)
+{
+  const int rings = 4, perRing = 12;
+  std::vector<Eigen::Vector3d> ups = {Eigen::Vector3d::UnitZ()};
+  for (int ring = 1; ring <= rings; ++ring)
+    for (int k = 0; k < perRing; ++k) {
+      const double tilt = maxTilt * ring / rings, azimuth = 2 * M_PI * k / perRing;
+      ups.emplace_back(std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
+                       std::cos(tilt));
+    }
+  return ups;
+}
+
+void addIfNew(std::vector<Minimum> &minima, const Minimum &found)
+{
+  for (Minimum &known : minima) {
+    const double turn = Eigen::AngleAxisd(known.pose.wRb.transpose() * found.pose.wRb).angle();
+    if (turn < 1e-3 && (known.pose.wtb - found.pose.wtb).norm() < 1e-3) {
+      if (found.cost < known.cost)
+        known = found;
+      return;
+    }
+  }
+  minima.push_back(found);
+}
+
+void descend(std::vector<Minimum> &minima, const vpRayFit &fit, const std::vector<vpBasePose> &starts,
+             double maxTilt, int rounds = 3)
+{
+  for (const vpBasePose &start : starts) {
+    const Minimum found = fit.minimise(start, rounds);
+    if (found.converged && found.pose.tilt() <= maxTilt)
+      addIfNew(minima, found);
+  }
+}
+
+/*
+  All local minima of the free attitude. A flat group of lamps has two: seen along the line of sight l, a
+  plane whose normal is mirrored at l looks the same but for perspective. Three lamps have up to four exact
+  poses (Grunert 1841).
+*/
+std::vector<Minimum> freeMinima(const vpRayFit &fit, const std::vector<vpLampSight> &lamps,
+                                const vpMountFrame &mount, double maxTilt)
+{
+  std::vector<Minimum> found, minima;
+  for (const Eigen::Vector3d &up : upDirections(maxTilt))
+    descend(found, fit, posesWithUp(up, lamps, mount), maxTilt, 1);
+
+  Eigen::Vector3d sight = Eigen::Vector3d::Zero();
+  for (const vpLampSight &lamp : lamps)
+    sight += mount.bRc * lamp.ray.homogeneous().normalized();
+  sight.normalize();
+  for (size_t k = 0; k < found.size(); ++k) { // found grows
+    const Eigen::Vector3d up = found[k].pose.bUp();
+    descend(found, fit, posesWithUp(2 * up.dot(sight) * sight - up, lamps, mount), maxTilt, 1);
+  }
+  for (const Minimum &minimum : found)
+    descend(minima, fit, {minimum.pose}, maxTilt);
+  return minima;
+}
+
+/*
+  Best first. Where the picture does not tell poses apart (no likelihood ratio of \e likelihood between
+  them) and the rig says nothing of the tilt, the pose that stands most upright comes first.
+*/
+void rank(std::vector<Minimum> &minima, bool preferUpright, double likelihood)
+{
+  std::sort(minima.begin(), minima.end(), [](const Minimum &a, const Minimum &b) { return a.cost < b.cost; });
+  if (!preferUpright)
+    return;
+  const double limit = minima.front().cost + 2 * std::log(likelihood);
+  const auto end =
+      std::find_if(minima.begin(), minima.end(), [=](const Minimum &m) { return m.cost >= limit; });
+  std::sort(minima.begin(), end,
+            [](const Minimum &a, const Minimum &b) { return a.pose.tilt() < b.pose.tilt(); });
+}
+
+/*
+  Second moment of the pose about the minimum, with chi-square's own profile over the tilt instead of the
+  parabola that its derivatives make of it. They differ where a small flat group is seen head-on: its
+  foreshortening is of second order in the tilt, so noise alone moves the minimum off head-on, and there the
+  derivative claims a certainty that nothing has. The likelihood is summed along eight rays of tilts, each
+  up to where it is \e likelihood times less, and the sum scaled so that a parabola keeps the covariance it
+  had.
+*/
+void addCurvature(vpMatrix6d &covariance, const Minimum &best, const vpRayFit &tiltHeld, double likelihood)
+{
+  const Eigen::LLT<Eigen::Matrix2d> root(Eigen::Matrix2d(covariance.block<2, 2>(3, 3)));
+  // Pose by tilt in units of its sigma, the other parameters following.
+  const Eigen::Matrix<double, 6, 2> byTilt = root.matrixL().solve(covariance.middleRows<2>(3)).transpose();
+  const double limit = 2 * std::log(likelihood), stride = 0.5, farthest = 40; // sigma
+  vpMatrix6d moment = vpMatrix6d::Zero();
+  double weights = 0, parabolaMoment = 0, parabolaWeights = 0;
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector2d ray(std::cos(M_PI * k / 4), std::sin(M_PI * k / 4));
+    for (double reach = stride; reach < farthest; reach += stride) {
+      const Minimum there = tiltHeld.minimise(best.pose.moved(byTilt * ray * reach), 1);
+      const double rise = there.cost - best.cost;
+      if (reach * reach <= limit) {
+        const double weight = reach * std::exp(-reach * reach / 2);
+        parabolaMoment += weight * reach * reach / 2;
+        parabolaWeights += weight;
+      }
+      if (!there.converged || rise > limit)
+        break;
+      const Eigen::Matrix<double, 6, 1> moved = best.pose.stepTo(there.pose);
+      const double weight = reach * std::exp(-rise / 2);
+      moment += weight * moved * moved.transpose();
+      weights += weight;
+    }
+  }
+  if (weights > 0)
+    covariance += moment * (parabolaWeights / (weights * parabolaMoment)) - byTilt * byTilt.transpose();
+}
+
+// The fix of the best minimum.
+vpVlpFix fixOf(std::vector<Minimum> &minima, const vpRayFit &fit, const std::vector<vpLampSight> &lamps,
+               const vpVlpRig &rig, double likelihood, bool free)
+{
+  const vpMountFrame mount(rig);
+  rank(minima, free && !mount.tiltStated(), likelihood);
+  const Minimum &best = minima.front();
+  vpVlpFix fix;
+  if (!fit.covariance(best.pose, fix.covariance) || !describeFix(fix, lamps, best.pose, rig))
+    return refusedFix("the lamps do not determine the pose");
+  if (free)
+    addCurvature(fix.covariance, best, vpRayFit(lamps, mount, vpRayFit::Kind::freeTiltHeld), likelihood);
+  fix.covariance += mountDoubt(best.pose, mount);
+  fix.chiSquare = best.cost;
+  fix.degreesOfFreedom = fit.degreesOfFreedom();
+  fix.ambiguous = minima.size() > 1 && std::abs(minima[1].cost - best.cost) < 2 * std::log(likelihood);
+  if (fix.ambiguous)
+    fix.other = minima[1].pose.wMb();
+  return fix;
+}
+} // namespace
+
+vpVlpFix vpManyLampSolver::solve(const std::vector<vpLampSight> &lamps, const vpVlpRig &rig) const
+{
+  return attitude == Attitude::free ? solveFree(lamps, rig) : solveMount(lamps, rig);
+}
+
+vpVlpFix vpManyLampSolver::solveMount(const std::vector<vpLampSight> &lamps, const vpVlpRig &rig) const
+{
+  const vpVlpFix pair = vpTwoLampSolver().solveBestPair(lamps, rig);
+  if (!pair.valid || lamps.size() == 2)
+    return pair;
+  const std::string problem = weightProblem(lamps);
+  if (!problem.empty())
+    return refusedFix(problem);
+
+  std::vector<vpBasePose> starts = {vpBasePose::of(pair.wMb)};
+  if (pair.ambiguous)
+    starts.push_back(vpBasePose::of(pair.other));
+  const vpMountFrame mount(rig);
+  const vpRayFit fit(lamps, mount, vpRayFit::Kind::level);
+  std::vector<Minimum> minima;
+  descend(minima, fit, starts, M_PI);
+  if (minima.empty())
+    return refusedFix("no pose has the " + std::to_string(lamps.size()) +
+                      " lamps in front of the camera; one id or place is wrong");
+  return fixOf(minima, fit, lamps, rig, ambiguityLikelihood, false);
+}
+
+vpVlpFix vpManyLampSolver::solveFree(const std::vector<vpLampSight> &lamps, const vpVlpRig &rig) const
+{
+  if (lamps.size() < 3)
+    return refusedFix("a free attitude needs three lamps, " + std::to_string(lamps.size()) + " came");
+  std::string problem = sightProblem(lamps);
+  if (problem.empty())
+    problem = weightProblem(lamps);
+  if (!problem.empty())
+    return refusedFix(problem);
+  if (onOneLine(lamps))
+    return refusedFix("the " + std::to_string(lamps.size()) +
+                      " lamps hang on one line: they leave the rotation about it free");
+
+  const vpMountFrame mount(rig);
+  const vpRayFit fit(lamps, mount, vpRayFit::Kind::free);
+  std::vector<Minimum> minima = freeMinima(fit, lamps, mount, maxTilt);
+  if (minima.empty())
+    return refusedFix("no pose within " + degrees(maxTilt) + " of the vertical sees the " +
+                      std::to_string(lamps.size()) + " lamps");
+  vpVlpFix fix = fixOf(minima, fit, lamps, rig, ambiguityLikelihood, true);
+  if (!fix.valid)
+    return fix;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> tilt;
+  tilt.computeDirect(Eigen::Matrix2d(fix.covariance.block<2, 2>(3, 3)), Eigen::EigenvaluesOnly);
+  const double tiltSigma = std::sqrt(tilt.eigenvalues()(1));
+  if (!(tiltSigma <= maxTiltSigma))
+    return refusedFix("the lamps leave roll and pitch uncertain by " + degrees(tiltSigma) + ", at most " +
+                      degrees(maxTiltSigma) + " is accepted");
+  return fix;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,179 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpRayFit.h"
+
+#include <algorithm>
+#include <cmath>
+
+BEGIN_VISP_NAMESPACE
+
+vpRayFit::vpRayFit(const std::vector<vpLampSight> &lamps, const vpMountFrame &mount, Kind kind)
+    : m_lamps(lamps), m_mount(mount), m_tiltInDoubt(kind == Kind::level), m_six(kind == Kind::free),
+      m_fixedDoubt(!m_tiltInDoubt || !mount.tiltStated())
+{
+  for (const vpLampSight &lamp : lamps)
+    m_fixedDoubt = m_fixedDoubt && lamp.positionSigma == 0;
+}
+
+int vpRayFit::rows() const
+{
+  const int angles = m_tiltInDoubt ? 0 : (m_mount.rotationSigma.x() > 0) + (m_mount.rotationSigma.y() > 0);
+  return 2 * static_cast<int>(m_lamps.size()) + angles;
+}
+
+int vpRayFit::degreesOfFreedom() const
+{
+  return rows() - (m_six ? 6 : 4);
+}
+
+vpRayFit::Linear vpRayFit::linearise(const vpBasePose &pose, bool withDoubt) const
+{
+  Linear linear;
+  linear.residual.setZero(rows());
+  linear.byBase.setZero(rows(), 6);
+  if (withDoubt)
+    linear.doubt.setZero(rows(), rows());
+  for (size_t k = 0; k < m_lamps.size(); ++k) {
+    const vpPredictedRay predicted = predictRay(m_lamps[k].position, pose, m_mount);
+    if (!predicted.inFront) {
+      linear.inFront = false;
+      return linear;
+    }
+    linear.residual.segment<2>(2 * k) = m_lamps[k].ray - predicted.ray;
+    linear.byBase.middleRows<2>(2 * k) = predicted.derivative;
+    if (withDoubt)
+      linear.doubt.block<2, 2>(2 * k, 2 * k) = rayDoubt(m_lamps[k], predicted);
+  }
+  if (!m_tiltInDoubt)
+    addTiltPrior(linear, pose);
+  else if (withDoubt && m_mount.tiltStated()) {
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> byTilt = linear.byBase.middleCols<2>(3);
+    linear.doubt += byTilt * tiltDoubt(pose, m_mount) * byTilt.transpose();
+  }
+  return linear;
+}
+
+// Up in b is (-pitch, roll, 1) to first order; turning the base by a small e about axes of w moves it by
+// wRb^T (z x e).
+void vpRayFit::addTiltPrior(Linear &linear, const vpBasePose &pose) const
+{
+  const Eigen::Vector3d up = pose.bUp();
+  Eigen::Matrix3d upByRotation = Eigen::Matrix3d::Zero();
+  upByRotation.col(0) = pose.wRb.row(1).transpose();  // z x x = y
+  upByRotation.col(1) = -pose.wRb.row(0).transpose(); // z x y = -x
+  const double angle[2] = {up.y(), -up.x()};
+  const Eigen::RowVector3d byRotation[2] = {upByRotation.row(1), -upByRotation.row(0)};
+  int row = 2 * static_cast<int>(m_lamps.size());
+  for (int k = 0; k < 2; ++k) {
+    const double sigma = m_mount.rotationSigma(k);
+    if (!(sigma > 0))
+      continue;
+    linear.residual(row) = -angle[k];
+    linear.byBase.block<1, 3>(row, 3) = byRotation[k];
+    if (linear.doubt.size() > 0)
+      linear.doubt(row, row) = sigma * sigma;
+    ++row;
+  }
+}
+
+vpRayFit::Columns vpRayFit::parameterColumns(const Rows6 &byBase) const
+{
+  if (m_six)
+    return byBase;
+  Columns columns(byBase.rows(), 4);
+  columns << byBase.leftCols<3>(), byBase.col(5);
+  return columns;
+}
+
+Eigen::Matrix<double, 6, 1> vpRayFit::step(const Parameters &parameters) const
+{
+  if (m_six)
+    return parameters;
+  Eigen::Matrix<double, 6, 1> step;
+  step << parameters.head<3>(), 0, 0, parameters(3);
+  return step;
+}
+
+vpRayFit::Minimum vpRayFit::minimise(const vpBasePose &start, int rounds) const
+{
+  Minimum minimum;
+  minimum.pose = start;
+  for (int round = 0; round < (m_fixedDoubt ? 1 : rounds); ++round) {
+    const Linear linear = linearise(minimum.pose, true);
+    minimum.converged = false;
+    if (!linear.inFront)
+      break;
+    const Cholesky S(linear.doubt);
+    if (S.info() != Eigen::Success || !descend(minimum, S))
+      break;
+  }
+  return minimum;
+}
+
+bool vpRayFit::descend(Minimum &minimum, const Cholesky &S) const
+{
+  double damping = 1e-3;
+  Linear linear = linearise(minimum.pose, false);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const Eigen::VectorXd r = S.matrixL().solve(linear.residual); // whitened
+    const Columns J = S.matrixL().solve(parameterColumns(linear.byBase));
+    const Square normal = J.transpose() * J;
+    const Parameters gradient = J.transpose() * r;
+    minimum.cost = r.squaredNorm();
+    bool better = false;
+    while (!better && damping < 1e12) {
+      Square damped = normal;
+      damped.diagonal() *= 1 + damping;
+      const Parameters change = damped.ldlt().solve(gradient);
+      const double gain = change.dot(gradient); // of the cost, twice as predicted
+      if (!std::isfinite(gain))
+        return false;
+      minimum.converged = damping <= 1 && gain < 1e-12 * (1 + minimum.cost);
+      if (minimum.converged)
+        return true;
+      const vpBasePose trial = minimum.pose.moved(step(change));
+      Linear there = linearise(trial, false);
+      better = there.inFront && S.matrixL().solve(there.residual).squaredNorm() < minimum.cost;
+      minimum.converged = !better && damping <= 1 && gain < 1e-6 * (1 + minimum.cost); // but for rounding
+      if (minimum.converged)
+        return true;
+      damping = better ? std::max(damping / 10, 1e-12) : damping * 10;
+      if (better) {
+        minimum.pose = trial;
+        linear = std::move(there);
+      }
+    }
+    if (!better)
+      return false;
+  }
+  return false;
+}
+
+bool vpRayFit::covariance(const vpBasePose &pose, vpMatrix6d &covariance) const
+{
+  const Linear linear = linearise(pose, true);
+  if (!linear.inFront)
+    return false;
+  const Cholesky S(linear.doubt);
+  const Columns J = parameterColumns(linear.byBase);
+  const Columns weighted = S.solve(J);
+  const Square normal = J.transpose() * weighted;
+  // Conditioned apart from the units of the parameters.
+  const Parameters scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+  const Square scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  const Eigen::LDLT<Square> factors(scaled);
+  if (!scaled.allFinite() || factors.vectorD().minCoeff() < 1e-12)
+    return false;
+  const Square identity = Square::Identity(scaled.rows(), scaled.cols());
+  const Square inverse = scale.asDiagonal() * factors.solve(identity) * scale.asDiagonal();
+  if (m_six)
+    covariance = (inverse + inverse.transpose()) / 2;
+  else
+    covariance = levelCovariance(inverse * weighted.transpose(), linear.doubt, linear.byBase.middleCols<2>(3),
+                                 tiltDoubt(pose, m_mount));
+  return covariance.allFinite();
+}
+
+END_VISP_NAMESPACE

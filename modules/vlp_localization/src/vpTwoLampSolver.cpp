@@ -1,0 +1,186 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_localization/vpTwoLampSolver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include <Eigen/LU>
+
+#include "vpLampGeometry.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const double samePlace = 1e-6; // m in the map, and normalised units in the picture
+
+std::string both(const vpLampSight &first, const vpLampSight &second)
+{
+  return "lamps " + first.id + " and " + second.id;
+}
+
+std::string degrees(double angle)
+{
+  std::ostringstream text;
+  text.precision(2);
+  text << angle * 180 / M_PI << " degrees";
+  return text.str();
+}
+
+// Distance in the picture over its standard deviation along the line between the two image points.
+double separation(const vpLampSight &first, const vpLampSight &second)
+{
+  const Eigen::Vector2d apart = second.ray - first.ray;
+  const double variance = apart.dot((first.covariance + second.covariance) * apart) / apart.squaredNorm();
+  return variance > 0 ? apart.norm() / std::sqrt(variance) : std::numeric_limits<double>::infinity();
+}
+
+// What is wrong with the pair before any equation is solved; empty where nothing is.
+std::string pairProblem(const vpLampSight &first, const vpLampSight &second, const vpLampPair &pair,
+                        double minImageSeparation)
+{
+  if (std::abs(pair.step) < samePlace)
+    return both(first, second) + (std::abs(pair.rise) < samePlace
+                                      ? " have the same place in the map"
+                                      : " hang one above the other: they do not show the heading");
+  for (int k = 0; k < 2; ++k)
+    if (!pair.aboveHorizon[k])
+      return "lamp " + (k ? second : first).id +
+             ": its ray does not point above the horizon; is the rig's mount rotation right?";
+  if ((second.ray - first.ray).norm() < samePlace)
+    return both(first, second) + " have the same place in the picture";
+  const double sigmas = separation(first, second);
+  if (sigmas < minImageSeparation) {
+    std::ostringstream text;
+    text.precision(2);
+    text << both(first, second) << " are only " << sigmas << " sigma apart in the picture, "
+         << minImageSeparation << " are needed";
+    return text.str();
+  }
+  return "";
+}
+
+// Covariance of wMb without mountDoubt(). False where the pose is not determined.
+bool pairCovariance(const std::vector<vpLampSight> &lamps, const vpBasePose &pose, const vpMountFrame &mount,
+                    vpMatrix6d &covariance)
+{
+  Eigen::Matrix<double, 4, 6> byBase;
+  Eigen::Matrix4d S = Eigen::Matrix4d::Zero();
+  for (int k = 0; k < 2; ++k) {
+    const vpPredictedRay predicted = predictRay(lamps[k].position, pose, mount);
+    if (!predicted.inFront)
+      return false;
+    byBase.middleRows<2>(2 * k) = predicted.derivative;
+    S.block<2, 2>(2 * k, 2 * k) = rayDoubt(lamps[k], predicted);
+  }
+  Eigen::Matrix4d J;
+  J << byBase.leftCols<3>(), byBase.col(5);
+  const Eigen::FullPivLU<Eigen::Matrix4d> lu(J);
+  if (!(lu.rcond() > 1e-12))
+    return false;
+  const Eigen::Matrix2d tilt = tiltDoubt(pose, mount);
+  const Eigen::Matrix<double, 4, 2> byTilt = byBase.middleCols<2>(3);
+  S += byTilt * tilt * byTilt.transpose();
+  covariance = levelCovariance(lu.inverse(), S, byTilt, tilt);
+  return covariance.allFinite();
+}
+
+// Refusal where the pair leaves height or heading too uncertain; empty where it does not.
+std::string doubtProblem(const vpLampSight &first, const vpLampSight &second, double height,
+                         const vpMatrix6d &covariance, double limit)
+{
+  const double sigma = std::sqrt(covariance(2, 2)) / height;
+  const double yawSigma = std::sqrt(covariance(5, 5));
+  std::ostringstream text;
+  text.precision(2);
+  if (sigma > limit)
+    text << both(first, second) << " leave the height above the camera uncertain by " << 100 * sigma
+         << " %, at most " << 100 * limit << " % is accepted";
+  else if (yawSigma > limit)
+    text << both(first, second) << " leave the heading uncertain by " << degrees(yawSigma) << ", at most "
+         << degrees(limit) << " is accepted";
+  return text.str();
+}
+} // namespace
+
+vpVlpFix vpTwoLampSolver::solve(const vpLampSight &first, const vpLampSight &second,
+                                const vpVlpRig &rig) const
+{
+  const std::vector<vpLampSight> lamps = {first, second};
+  const vpMountFrame mount(rig);
+  const Eigen::Matrix3d level = Eigen::Matrix3d::Identity(); // the base stands level
+  std::string problem = sightProblem(lamps);
+  if (!problem.empty())
+    return refusedFix(problem);
+  const vpLampPair pair(first, second, mount, level);
+  problem = pairProblem(first, second, pair, minImageSeparation);
+  if (!problem.empty())
+    return refusedFix(problem);
+
+  bool disagree = false;
+  std::vector<double> heights = pair.heights(disagree);
+  if (disagree)
+    return refusedFix(both(first, second) + ": no height of the camera fits their places in map and picture");
+  if (heights.empty())
+    return refusedFix(both(first, second) + ": the camera would have to be above them");
+  // The robot drives on z = 0: of two heights the one that puts its base nearer to there.
+  std::vector<vpBasePose> poses;
+  for (double H : heights)
+    poses.push_back(pair.pose(H, first, mount, level));
+  if (poses.size() == 2 && std::abs(poses[1].wtb.z()) < std::abs(poses[0].wtb.z())) {
+    std::swap(poses[0], poses[1]);
+    std::swap(heights[0], heights[1]);
+  }
+
+  vpVlpFix fix;
+  if (!pairCovariance(lamps, poses[0], mount, fix.covariance))
+    return refusedFix(both(first, second) + " do not determine the pose");
+  problem = doubtProblem(first, second, heights[0] + pair.rise / 2, fix.covariance, maxRelativeSigma);
+  if (!problem.empty())
+    return refusedFix(problem);
+  fix.covariance += mountDoubt(poses[0], mount);
+  describeFix(fix, lamps, poses[0], rig);
+  fix.ambiguous = poses.size() == 2;
+  if (fix.ambiguous)
+    fix.other = poses[1].wMb();
+  return fix;
+}
+
+vpVlpFix vpTwoLampSolver::solveBestPair(const std::vector<vpLampSight> &lamps, const vpVlpRig &rig) const
+{
+  if (lamps.size() < 2)
+    return refusedFix("a position needs two lamps, " + std::to_string(lamps.size()) + " came");
+  const std::string problem = sightProblem(lamps);
+  if (!problem.empty())
+    return refusedFix(problem);
+
+  vpVlpFix best;
+  double bestTrace = std::numeric_limits<double>::infinity();
+  double widest = -1;
+  for (size_t i = 0; i < lamps.size(); ++i)
+    for (size_t j = i + 1; j < lamps.size(); ++j) {
+      vpVlpFix fix = solve(lamps[i], lamps[j], rig);
+      const double trace = fix.covariance(0, 0) + fix.covariance(1, 1);
+      if (fix.valid && trace < bestTrace) {
+        best = std::move(fix);
+        bestTrace = trace;
+        continue;
+      }
+      const double apart = (lamps[j].ray - lamps[i].ray).norm();
+      if (!best.valid && apart > widest) { // what is wrong with the widest pair tells most
+        best.refusal = fix.refusal;
+        widest = apart;
+      }
+    }
+  if (!best.valid && lamps.size() > 2)
+    best.refusal = "no pair of the " + std::to_string(lamps.size()) +
+                   " lamps gives a position; the widest: " + best.refusal;
+  return best;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Release and runs every test.
+# VLP_INPUT_IMAGE_PATH: the folder of real pictures that tests/real looks at; without it those tests are skipped.
+set -euo pipefail
+
+if [ -n "${VLP_INPUT_IMAGE_PATH:-}" ]; then
+  export VLP_INPUT_IMAGE_PATH="$(realpath "$VLP_INPUT_IMAGE_PATH")"
+fi
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+if [ -z "${VLP_INPUT_IMAGE_PATH:-}" ] && [ -d ../shared/real ]; then
+  export VLP_INPUT_IMAGE_PATH="$(realpath ../shared/real)"
+  echo "VLP_INPUT_IMAGE_PATH is not set: taking $VLP_INPUT_IMAGE_PATH"
+fi
+
+bash cmake/install-dependencies.sh
+cmake --preset release
+cmake --build --preset release
+status=0
+ctest --preset release "$@" || status=$?
+grep 'real pictures used' build/release/Testing/Temporary/LastTest.log || echo 'real pictures used: 0'
+exit $status
