@@ -17,7 +17,7 @@ std::complex<double> pulseHarmonic(int k, double width)
     return width;
   }
   const double phase = M_PI * k * width;
-  return std::polar(std::sin(phase) / (M_PI * k), -phase);
+  return std::sin(phase) / (M_PI * k) * std::polar(1.0, -phase); // polar takes no negative magnitude
 }
 
 //! exp(-2 i pi turns)

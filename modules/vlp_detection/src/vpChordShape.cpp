@@ -19,7 +19,8 @@ namespace
 const double noFit = 1e6; // px
 
 //! The points no farther than \e nearly from their convex hull.
-std::vector<cv::Point2f> onHull(const std::vector<cv::Point2f> &points, const std::vector<cv::Point2f> &hull, double nearly)
+std::vector<cv::Point2f> onHull(const std::vector<cv::Point2f> &points, const std::vector<cv::Point2f> &hull,
+                                double nearly)
 {
   std::vector<cv::Point2f> outer;
   for (const cv::Point2f &p : points) {
@@ -66,7 +67,8 @@ double solidity(const vpLedRoi &roi, const std::vector<cv::Point2f> &hull)
   return std::min(1.0, lit / convex);
 }
 
-//! Mean share of a line's light, just inside its chord, that is gone just outside: 1 for a sharp edge, 0 for a glow.
+//! Mean share of a line's light, just inside its chord, that is gone just outside: 1 for a sharp edge, 0 for
+//! a glow.
 double sharpness(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark)
 {
   const int reach = 2 + roi.box.width / 50;
@@ -184,7 +186,8 @@ double vpChordShape::lampness(const vpLedRoi &roi, const cv::Mat_<unsigned char>
   const double misfit = std::min(ellipseMisfit(outer, roi.box), rectangleMisfit(outer)) / tolerance;
   const double aspect = std::min(1.0, 1.6 * std::min(roi.box.width, roi.box.height) / size);
   const double evidence = 1 - 4.0 / (4.0 + outer.size());
-  return std::exp(-0.5 * misfit * misfit) * convex * aspect * evidence * (0.4 + 0.6 * sharpness(roi, lines, dark));
+  return std::exp(-0.5 * misfit * misfit) * convex * aspect * evidence *
+         (0.4 + 0.6 * sharpness(roi, lines, dark));
 }
 
 END_VISP_NAMESPACE

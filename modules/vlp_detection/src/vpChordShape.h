@@ -16,15 +16,17 @@ BEGIN_VISP_NAMESPACE
 namespace vpChordShape
 {
 
-//! Outer ends of the chords, half a pixel outside the last lit sample; those at the picture's border left out.
+//! Outer ends of the chords, half a pixel outside the last lit sample; those at the picture's border left
+//! out.
 std::vector<cv::Point2f> ends(const vpLedRoi &roi, int samples);
 
-//! Those of them that lie on the region's convex hull, or nearly: half-lit lines fall short of a soft outline.
+//! Those of them that lie on the region's convex hull, or nearly: half-lit lines fall short of a soft
+//! outline.
 std::vector<cv::Point2f> outerEnds(const vpLedRoi &roi, int samples);
 
 /*!
-  Root mean square distance of the points to their best ellipse, to first order, and to the smallest rectangle around
-  them, pixels; a large number where there is none.
+  Root mean square distance of the points to their best ellipse, to first order, and to the smallest rectangle
+  around them, pixels; a large number where there is none.
 */
 double ellipseMisfit(const std::vector<cv::Point2f> &points, const cv::Rect &box);
 double rectangleMisfit(const std::vector<cv::Point2f> &points);

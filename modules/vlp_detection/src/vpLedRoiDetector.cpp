@@ -92,7 +92,8 @@ Background background(const cv::Mat_<unsigned char> &lines)
       }
     }
   }
-  // The median of |difference| of two Gaussian pixels is 0.954 sigma; it comes in whole grey levels, so interpolate.
+  // The median of |difference| of two Gaussian pixels is 0.954 sigma; it comes in whole grey levels, so
+  // interpolate.
   double noise = 0.3;
   size_t sum = 0;
   for (size_t d = 0; d < differences.size() && count > 0; ++d) {
@@ -106,7 +107,8 @@ Background background(const cv::Mat_<unsigned char> &lines)
   return {low + 2 * noise, noise};
 }
 
-//! Runs of pixels above \e grey, looked for inside the runs of the level below (everywhere, where there is none).
+//! Runs of pixels above \e grey, looked for inside the runs of the level below (everywhere, where there is
+//! none).
 std::vector<Run> runsAbove(const cv::Mat_<unsigned char> &lines, double grey, const Level *below)
 {
   std::vector<Run> runs;
@@ -156,7 +158,8 @@ void joinRuns(Level &level, int minWidth)
                          (runs[above].line == runs[i].line - 1 && runs[above].last < runs[i].first - 1))) {
       ++above;
     }
-    for (size_t j = above; j < i && runs[j].line == runs[i].line - 1 && runs[j].first <= runs[i].last + 1; ++j) {
+    for (size_t j = above; j < i && runs[j].line == runs[i].line - 1 && runs[j].first <= runs[i].last + 1;
+         ++j) {
       root[rootOf(root, static_cast<int>(i))] = rootOf(root, static_cast<int>(j));
     }
   }
@@ -228,15 +231,17 @@ std::vector<std::vector<int>> linkStripes(const std::vector<Stripe> &stripes, do
   for (const Stripe &stripe : stripes) {
     widest = std::max(widest, stripe.box.width);
   }
-  const int reach = widest >= samples - 2 ? std::numeric_limits<int>::max() / 2 : static_cast<int>(maxDarkGap * widest) + 1;
+  const int reach =
+      widest >= samples - 2 ? std::numeric_limits<int>::max() / 2 : static_cast<int>(maxDarkGap * widest) + 1;
 
   std::vector<int> root(stripes.size());
   std::iota(root.begin(), root.end(), 0);
   std::vector<int> open; // stripes above that may still be continued
   for (int lower : order) {
-    open.erase(std::remove_if(open.begin(), open.end(),
-                              [&](int a) { return stripes[lower].box.y - stripes[a].lastLine() - 1 > reach; }),
-               open.end());
+    open.erase(
+        std::remove_if(open.begin(), open.end(),
+                       [&](int a) { return stripes[lower].box.y - stripes[a].lastLine() - 1 > reach; }),
+        open.end());
     int nearest = -1;
     for (int upper : open) {
       if (facing(stripes[upper], stripes[lower], maxDarkGap, samples) &&
@@ -292,10 +297,11 @@ vpLedRoi roiOf(const Level &level, const std::vector<int> &stripes, const cv::Ma
 }
 
 /*!
-  Lamps one above the other may lie closer than the longest dark gap of one lamp. Where the whole is no good lamp, tries to
-  cut it at each gap, and keeps a cut whose two parts both are better ones.
+  Lamps one above the other may lie closer than the longest dark gap of one lamp. Where the whole is no good
+  lamp, tries to cut it at each gap, and keeps a cut whose two parts both are better ones.
 */
-void splitWhereBetter(const Level &level, const std::vector<int> &stripes, const cv::Mat_<unsigned char> &lines,
+void splitWhereBetter(const Level &level, const std::vector<int> &stripes,
+                      const cv::Mat_<unsigned char> &lines,
                       std::vector<std::pair<std::vector<int>, vpLedRoi>> &out)
 {
   static const double goodLamp = 0.6;
@@ -308,8 +314,7 @@ void splitWhereBetter(const Level &level, const std::vector<int> &stripes, const
     for (size_t k = 1; k < stripes.size(); ++k) {
       const std::vector<int> upper(stripes.begin(), stripes.begin() + static_cast<long>(k));
       const std::vector<int> lower(stripes.begin() + static_cast<long>(k), stripes.end());
-      const double worse =
-          std::min(roiOf(level, upper, lines).lampness, roiOf(level, lower, lines).lampness);
+      const double worse = std::min(roiOf(level, upper, lines).lampness, roiOf(level, lower, lines).lampness);
       if (worse > best) {
         best = worse;
         cut = k;
@@ -325,8 +330,8 @@ void splitWhereBetter(const Level &level, const std::vector<int> &stripes, const
 }
 
 /*!
-  The best regions at or above \e node: itself, or those of its children where these, weighted by their size, make better
-  lamps. So a lamp beats its own fragments, and two lamps beat the blot that joins them.
+  The best regions at or above \e node: itself, or those of its children where these, weighted by their size,
+  make better lamps. So a lamp beats its own fragments, and two lamps beat the blot that joins them.
 */
 double bestBranch(const std::vector<Group> &tree, int node, std::vector<int> &chosen)
 {
@@ -363,7 +368,8 @@ void dropCrumbs(std::vector<vpLedRoi> &rois)
     });
   };
   std::vector<vpLedRoi> kept;
-  std::copy_if(rois.begin(), rois.end(), std::back_inserter(kept), [&](const vpLedRoi &roi) { return !crumb(roi); });
+  std::copy_if(rois.begin(), rois.end(), std::back_inserter(kept),
+               [&](const vpLedRoi &roi) { return !crumb(roi); });
   rois = std::move(kept);
 }
 
@@ -371,7 +377,8 @@ void dropCrumbs(std::vector<vpLedRoi> &rois)
 
 vpLinePicture::vpLinePicture(const vpImage<unsigned char> &I, bool alongColumns) : transposed(alongColumns)
 {
-  const cv::Mat_<unsigned char> view(static_cast<int>(I.getHeight()), static_cast<int>(I.getWidth()), I.bitmap);
+  const cv::Mat_<unsigned char> view(static_cast<int>(I.getHeight()), static_cast<int>(I.getWidth()),
+                                     I.bitmap);
   if (transposed) {
     cv::transpose(view, grey);
   } else {

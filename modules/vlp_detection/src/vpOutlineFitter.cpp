@@ -21,7 +21,10 @@ namespace
 {
 
 //! Share of a pixel's light at signed distance \e d outside an edge of Gaussian spread \e blur.
-double edge(double d, double blur) { return 0.5 * std::erfc(d / (blur * M_SQRT2)); }
+double edge(double d, double blur)
+{
+  return 0.5 * std::erfc(d / (blur * M_SQRT2));
+}
 
 double median(std::vector<double> values)
 {
@@ -34,13 +37,14 @@ double median(std::vector<double> values)
 }
 
 /*!
-  One end of one line: the normal equations of the outline's parameters and the blur from its pixels, with the end's own
-  background and amplitude eliminated.
+  One end of one line: the normal equations of the outline's parameters and the blur from its pixels, with the
+  end's own background and amplitude eliminated.
 */
-template <int N> struct LineEnd {
+template <int N>
+struct LineEnd {
   Eigen::Matrix<double, N, N> H;
   Eigen::Matrix<double, N, 1> g;
-  double squares = 0;    // sum of squared residuals, grey levels
+  double squares = 0; // sum of squared residuals, grey levels
   int pixels = 0;
   double amplitude = 0;  // grey levels
   double background = 0; // grey value
@@ -48,7 +52,8 @@ template <int N> struct LineEnd {
   double offsetWeight = 0;
 };
 
-template <class Model> class Fit
+template <class Model>
+class Fit
 {
 public:
   static constexpr int N = Model::parameters + 1;
@@ -56,7 +61,7 @@ public:
 
   Fit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
       const std::vector<double> &samplePositions, const Model &start)
-    : m_lines(lines), m_v(linePositions), m_u(samplePositions), m_model(start)
+      : m_lines(lines), m_v(linePositions), m_u(samplePositions), m_model(start)
   {
   }
 
@@ -85,7 +90,8 @@ private:
   double m_misfit = 0;
 };
 
-template <class Model> std::optional<typename Fit<Model>::End> Fit<Model>::lineEnd(int line, double first, double last) const
+template <class Model>
+std::optional<typename Fit<Model>::End> Fit<Model>::lineEnd(int line, double first, double last) const
 {
   const int from = std::max(0, static_cast<int>(std::ceil(first)));
   const int to = std::min(m_lines.cols - 1, static_cast<int>(std::floor(last)));
@@ -135,7 +141,8 @@ template <class Model> std::optional<typename Fit<Model>::End> Fit<Model>::lineE
   return end;
 }
 
-template <class Model> void Fit<Model>::collect(int line, double v, std::vector<End> &ends) const
+template <class Model>
+void Fit<Model>::collect(int line, double v, std::vector<End> &ends) const
 {
   double outerFirst, outerLast, first, last, innerFirst, innerLast;
   if (!m_model.stretch(v, 0, first, last) || !m_model.stretch(v, m_reach, outerFirst, outerLast)) {
@@ -155,7 +162,8 @@ template <class Model> void Fit<Model>::collect(int line, double v, std::vector<
   }
 }
 
-template <class Model> std::vector<typename Fit<Model>::End> Fit<Model>::lineEnds() const
+template <class Model>
+std::vector<typename Fit<Model>::End> Fit<Model>::lineEnds() const
 {
   double top, bottom;
   m_model.vertical(top, bottom);
@@ -169,8 +177,8 @@ template <class Model> std::vector<typename Fit<Model>::End> Fit<Model>::lineEnd
 }
 
 /*!
-  Normal equations of all ends. An end's variance is that of its own residuals or the median of all, whichever is more;
-  an end that would move the edge far beyond what the others want is let go of.
+  Normal equations of all ends. An end's variance is that of its own residuals or the median of all, whichever
+  is more; an end that would move the edge far beyond what the others want is let go of.
 */
 template <class Model>
 void Fit<Model>::assemble(const std::vector<End> &ends, Eigen::MatrixXd &H, Eigen::VectorXd &g)
@@ -207,14 +215,16 @@ void Fit<Model>::assemble(const std::vector<End> &ends, Eigen::MatrixXd &H, Eige
     members += tukey;
   }
   m_residual = weights > 0 ? std::sqrt(squares / weights) : 0;
-  // Ends scatter more than their pixels' noise says where the edge is no Gaussian: the covariance is to say so.
+  // Ends scatter more than their pixels' noise says where the edge is no Gaussian: the covariance is to say
+  // so.
   m_inflation = members > N ? std::max(1.0, squares / (members - N)) : 1;
   m_background = median(backgrounds);
   m_noise = std::sqrt(noise);
   m_misfit = pixels > 0 ? chiSquare / pixels : 0;
 }
 
-template <class Model> bool Fit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations)
+template <class Model>
+bool Fit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations)
 {
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
@@ -238,9 +248,11 @@ template <class Model> bool Fit<Model>::run(const cv::Rect &box, double shapeSig
     if (longest > limit) {
       step *= limit / longest;
     }
-    const typename Model::Vector outlineStep = step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
+    const typename Model::Vector outlineStep =
+        step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
     m_model.advance(outlineStep);
-    m_blur = std::clamp(m_blur + std::clamp(step(N - 1), -0.3 * m_blur, 0.5 * m_blur), 0.25, 0.25 * radius + 0.5);
+    m_blur =
+        std::clamp(m_blur + std::clamp(step(N - 1), -0.3 * m_blur, 0.5 * m_blur), 0.25, 0.25 * radius + 0.5);
     if (!m_model.plausible(box)) {
       return false;
     }
@@ -252,7 +264,8 @@ template <class Model> bool Fit<Model>::run(const cv::Rect &box, double shapeSig
   return m_covariance.allFinite() && m_covariance.diagonal().minCoeff() >= 0;
 }
 
-template <class Model> vpOutlineFit Fit<Model>::result() const
+template <class Model>
+vpOutlineFit Fit<Model>::result() const
 {
   vpOutlineFit fit;
   fit.outline = m_model.outline(m_covariance);
@@ -273,14 +286,16 @@ vpLampOutline boxOf(const vpLedRoi &roi)
   outline.centre = Eigen::Vector2d(0.5 * (left + right), 0.5 * (top + bottom));
   outline.a = 0.5 * std::max(roi.box.width, roi.box.height);
   outline.b = 0.5 * std::min(roi.box.width, roi.box.height);
-  outline.centreCovariance = Eigen::Vector2d(roi.box.width * roi.box.width, roi.box.height * roi.box.height).asDiagonal();
+  outline.centreCovariance =
+      Eigen::Vector2d(roi.box.width * roi.box.width, roi.box.height * roi.box.height).asDiagonal();
   outline.centreCovariance /= 12;
   return outline;
 }
 
 } // namespace
 
-vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
+vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
+                                  const std::vector<double> &linePositions,
                                   const std::vector<double> &samplePositions, const vpLedRoi &roi) const
 {
   const std::vector<cv::Point2f> ends = vpChordShape::outerEnds(roi, lines.cols);
@@ -298,7 +313,8 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines, const st
     return best;
   }
   Fit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions, vpQuadrilateralModel::from(ends));
-  if (sides.run(roi.box, shapeSigma, maxIterations) && (!isEllipse || sides.misfit() < 0.8 * ellipse.misfit())) {
+  if (sides.run(roi.box, shapeSigma, maxIterations) &&
+      (!isEllipse || sides.misfit() < 0.8 * ellipse.misfit())) {
     best = sides.result();
   }
   return best;

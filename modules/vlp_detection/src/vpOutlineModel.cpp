@@ -18,18 +18,23 @@ namespace
 {
 
 //! Symmetric matrix with the eigenvectors of \e A and f of its eigenvalues.
-template <typename F> Eigen::Matrix2d onEigenvalues(const Eigen::Matrix2d &A, F f)
+template <typename F>
+Eigen::Matrix2d onEigenvalues(const Eigen::Matrix2d &A, F f)
 {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(A);
   const Eigen::Vector2d values = eigen.eigenvalues().unaryExpr(f);
   return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
+double wrapped(double angle)
+{
+  return std::remainder(angle, 2 * M_PI);
+}
 
 } // namespace
 
-vpEllipseModel::vpEllipseModel(const Eigen::Vector2d &centre, double a, double b, double angle) : m_centre(centre)
+vpEllipseModel::vpEllipseModel(const Eigen::Vector2d &centre, double a, double b, double angle)
+    : m_centre(centre)
 {
   Eigen::Matrix2d R;
   R << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
@@ -42,7 +47,8 @@ vpEllipseModel vpEllipseModel::from(const std::vector<cv::Point2f> &points, cons
     const cv::RotatedRect e = cv::fitEllipseDirect(points);
     const double a = 0.5 * e.size.width;
     const double b = 0.5 * e.size.height;
-    const vpEllipseModel model({e.center.x, e.center.y}, std::max(a, 1.0), std::max(b, 1.0), e.angle * M_PI / 180);
+    const vpEllipseModel model({e.center.x, e.center.y}, std::max(a, 1.0), std::max(b, 1.0),
+                               e.angle * M_PI / 180);
     const double ratio = a / b;
     if (ratio > 0.4 && ratio < 2.5 && model.plausible(box)) {
       return model;
@@ -69,7 +75,8 @@ void vpEllipseModel::advance(const Vector &step)
   m_centre += step.head<2>();
   Eigen::Matrix2d E;
   E << step(3), step(4), step(4), -step(3);
-  const Eigen::Matrix2d M = std::exp(-step(2)) * onEigenvalues(E, [](double e) { return std::exp(-0.5 * e); }) * m_shape;
+  const Eigen::Matrix2d M =
+      std::exp(-step(2)) * onEigenvalues(E, [](double e) { return std::exp(-0.5 * e); }) * m_shape;
   m_shape = onEigenvalues(M.transpose() * M, [](double e) { return std::sqrt(std::max(e, 1e-12)); });
 }
 
@@ -114,7 +121,10 @@ void vpEllipseModel::vertical(double &top, double &bottom) const
   bottom = m_centre.y() + half;
 }
 
-double vpEllipseModel::radius() const { return 1 / std::sqrt(std::max(m_shape.determinant(), 1e-12)); }
+double vpEllipseModel::radius() const
+{
+  return 1 / std::sqrt(std::max(m_shape.determinant(), 1e-12));
+}
 
 bool vpEllipseModel::plausible(const cv::Rect &box) const
 {
@@ -253,7 +263,10 @@ void vpQuadrilateralModel::vertical(double &top, double &bottom) const
   }
 }
 
-double vpQuadrilateralModel::radius() const { return m_scale; }
+double vpQuadrilateralModel::radius() const
+{
+  return m_scale;
+}
 
 bool vpQuadrilateralModel::plausible(const cv::Rect &box) const
 {
@@ -288,7 +301,8 @@ vpLampOutline vpQuadrilateralModel::outline(const Eigen::MatrixXd &covariance) c
   Eigen::Matrix<double, 2, parameters> J;
   static const double h = 1e-4;
   for (int i = 0; i < parameters; ++i) {
-    J.col(i) = (crossing(cornersAt(h * Vector::Unit(i))) - crossing(cornersAt(-h * Vector::Unit(i)))) / (2 * h);
+    J.col(i) =
+        (crossing(cornersAt(h * Vector::Unit(i))) - crossing(cornersAt(-h * Vector::Unit(i)))) / (2 * h);
   }
   outline.centreCovariance = J * covariance.topLeftCorner<parameters, parameters>() * J.transpose();
   return outline;

@@ -15,8 +15,9 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Outlines as the fitter sees them: a signed distance (negative inside), its derivatives, and the stretch of a line within some
-  distance of the edge. Steps are local: advance() moves the outline by a small step of its own parameters.
+  Outlines as the fitter sees them: a signed distance (negative inside), its derivatives, and the stretch of a
+  line within some distance of the edge. Steps are local: advance() moves the outline by a small step of its
+  own parameters.
 */
 class vpEllipseModel
 {
@@ -33,7 +34,8 @@ public:
   void advance(const Vector &step);
   //! Weak prior towards a circle, added to normal equations H step = g.
   void addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
-  //! Range of samples on line \e v at most \e distance outside (inside where negative) the outline; false: none.
+  //! Range of samples on line \e v at most \e distance outside (inside where negative) the outline; false:
+  //! none.
   bool stretch(double v, double distance, double &first, double &last) const;
   void vertical(double &top, double &bottom) const;
   double radius() const;
@@ -50,7 +52,8 @@ private:
 class vpQuadrilateralModel
 {
 public:
-  static constexpr int parameters = 8; // of each side: normal's angle (in px at half the mean side), distance (px)
+  static constexpr int parameters =
+      8; // of each side: normal's angle (in px at half the mean side), distance (px)
   using Vector = Eigen::Matrix<double, parameters, 1>;
 
   static vpQuadrilateralModel from(const std::vector<cv::Point2f> &points);

@@ -173,7 +173,7 @@ vpBasePose vpLampPair::pose(double H, const vpLampSight &first, const vpMountFra
 {
   const double yaw = std::arg(step / (H * (ray[1] - ray[0]) + rise * ray[1]));
   const std::complex<double> camera =
-      std::complex<double>(first.position.x(), first.position.y()) - std::polar(H, yaw) * ray[0];
+      std::complex<double>(first.position.x(), first.position.y()) - H * std::polar(1.0, yaw) * ray[0];
   vpBasePose pose;
   pose.wRb = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * level;
   pose.wtb = Eigen::Vector3d(camera.real(), camera.imag(), first.position.z() - H) - pose.wRb * mount.btc;

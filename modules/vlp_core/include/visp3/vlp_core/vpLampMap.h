@@ -20,13 +20,13 @@ struct VISP_EXPORT vpLamp {
   enum class Shape { disk, square };
 
   std::string id;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero(); // m, the lamp's middle in the map frame w (z up)
-  double positionSigma = 0;                           // m, standard deviation of each coordinate
-  Shape shape = Shape::disk;                          // lies flat, its light going straight down
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();     // m, the lamp's middle in the map frame w (z up)
+  double positionSigma = 0;                               // m, standard deviation of each coordinate
+  Shape shape = Shape::disk;                              // lies flat, its light going straight down
   double size = std::numeric_limits<double>::quiet_NaN(); // m, diameter or side; NaN where nobody measured it
-  double yaw = 0;                                     // rad about z, of a square: its sides along x and y at 0
+  double yaw = 0; // rad about z, of a square: its sides along x and y at 0
   vpModulation modulation;
-  double oscillatorPpm = 50;                          // standard deviation of its clock; 50: a crystal, 10000: RC
+  double oscillatorPpm = 50; // standard deviation of its clock; 50: a crystal, 10000: RC
 };
 
 //! The lamps of a place, as read from and written to a lamps.yaml.
@@ -37,8 +37,9 @@ struct VISP_EXPORT vpLampMap {
   const vpLamp *find(const std::string &id) const;
 
   /*!
-    Reads a lamps.yaml. \throw vpException (badValue or ioError) with one line that names file, line, field, what
-    came and what was expected: unknown or missing key, wrong type, duplicate id, number out of its range.
+    Reads a lamps.yaml. \throw vpException (badValue or ioError) with one line that names file, line, field,
+    what came and what was expected: unknown or missing key, wrong type, duplicate id, number out of its
+    range.
   */
   static vpLampMap load(const std::string &filename);
 

@@ -25,14 +25,16 @@ struct VISP_EXPORT vpLampOutline {
   enum class Shape { region, ellipse, quadrilateral };
 
   Shape shape = Shape::region;
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero(); // of the ellipse; crossing of the diagonals; middle of the box
-  double a = 0;                                     // semi-axes; of a region half its longer and shorter side
+  Eigen::Vector2d centre =
+      Eigen::Vector2d::Zero(); // of the ellipse; crossing of the diagonals; middle of the box
+  double a = 0;                // semi-axes; of a region half its longer and shorter side
   double b = 0;
-  double angle = 0;                                 // rad, from u to the major axis, towards v
-  std::array<Eigen::Vector2d, 4> corners{{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+  double angle = 0; // rad, from u to the major axis, towards v
+  std::array<Eigen::Vector2d, 4> corners{{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                          Eigen::Vector2d::Zero(),
                                           Eigen::Vector2d::Zero()}}; // quadrilateral and region
-  Eigen::Matrix2d centreCovariance = Eigen::Matrix2d::Zero(); // px^2
-  double residual = 0;                              // px, root mean square of edge points about the outline
+  Eigen::Matrix2d centreCovariance = Eigen::Matrix2d::Zero();        // px^2
+  double residual = 0; // px, root mean square of edge points about the outline
 
   //! Mean diameter of an ellipse, mean side of a quadrilateral or region, pixels.
   double diameter() const;
@@ -40,12 +42,12 @@ struct VISP_EXPORT vpLampOutline {
   Eigen::Vector4d box() const;
 
   /*!
-    Projection of the lamp's middle, in pixels. For an ellipse its own middle is not that point: the lamp's circle,
-    in a plane of normal \e cNormal (camera frame, any length), has its middle at the pole of the plane's vanishing
-    line with respect to the conic, c = C^-1 n in normalised coordinates. A quadrilateral's is the crossing of its
-    diagonals. Distortion: both are worked out on undistorted outline points, and the pixel is the one that
-    vpPixelMeterConversion takes to the middle's ray (ViSP's kud and kdu are no exact inverses of each other). A
-    region, a plane seen edge-on and a degenerate outline give the centre.
+    Projection of the lamp's middle, in pixels. For an ellipse its own middle is not that point: the lamp's
+    circle, in a plane of normal \e cNormal (camera frame, any length), has its middle at the pole of the
+    plane's vanishing line with respect to the conic, c = C^-1 n in normalised coordinates. A quadrilateral's
+    is the crossing of its diagonals. Distortion: both are worked out on undistorted outline points, and the
+    pixel is the one that vpPixelMeterConversion takes to the middle's ray (ViSP's kud and kdu are no exact
+    inverses of each other). A region, a plane seen edge-on and a degenerate outline give the centre.
   */
   Eigen::Vector2d middle(const vpCameraParameters &camera, const Eigen::Vector3d &cNormal) const;
 };
@@ -56,16 +58,17 @@ struct VISP_EXPORT vpStripeFeatures {
   enum class Signal { unmodulated, pwm, twoPulse, coded };
 
   Signal signal = Signal::unmodulated;
-  unsigned int stripes = 0;   // bright stripes
-  double area = 0;            // px of the lamp's region
-  double frequency = std::numeric_limits<double>::quiet_NaN();       // Hz
-  double frequencySigma = std::numeric_limits<double>::quiet_NaN();  // Hz, of the estimate alone, row time exact
-  double duty = std::numeric_limits<double>::quiet_NaN();            // lit share of the period
+  unsigned int stripes = 0;                                    // bright stripes
+  double area = 0;                                             // px of the lamp's region
+  double frequency = std::numeric_limits<double>::quiet_NaN(); // Hz
+  double frequencySigma =
+      std::numeric_limits<double>::quiet_NaN();           // Hz, of the estimate alone, row time exact
+  double duty = std::numeric_limits<double>::quiet_NaN(); // lit share of the period
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
   double phaseDifference = std::numeric_limits<double>::quiet_NaN(); // periods, twoPulse only
   double phaseDifferenceSigma = std::numeric_limits<double>::quiet_NaN();
-  double modulation = 0;      // depth of the stripes, 0 to 1
-  double misfit = 0;          // share of the stripes' power that the chosen signal leaves unexplained
+  double modulation = 0; // depth of the stripes, 0 to 1
+  double misfit = 0;     // share of the stripes' power that the chosen signal leaves unexplained
 };
 
 /*!
@@ -75,14 +78,14 @@ struct VISP_EXPORT vpLampObservation {
   vpLampOutline outline;
   Eigen::Vector2d point = Eigen::Vector2d::Zero();      // px, projection of the lamp's middle
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // px^2, of point
-  double time = 0;           // s, on the frame's clock: middle of the exposure of the line through point
-  bool cut = false;          // the picture's border cuts the lamp
-  double saturated = 0;      // share of its lit pixels at the end of the grey scale
+  double time = 0;      // s, on the frame's clock: middle of the exposure of the line through point
+  bool cut = false;     // the picture's border cuts the lamp
+  double saturated = 0; // share of its lit pixels at the end of the grey scale
   vpStripeFeatures features;
-  std::string id;            // of the map's lamp; empty: none of them, or more than one
-  double confidence = 0;     // probability of that id; without an id, of being none of the map's lamps
-  bool accepted = false;     // counts for the position
-  std::string remark;        // why it has no id or does not count; empty where there is nothing to say
+  std::string id;        // of the map's lamp; empty: none of them, or more than one
+  double confidence = 0; // probability of that id; without an id, of being none of the map's lamps
+  bool accepted = false; // counts for the position
+  std::string remark;    // why it has no id or does not count; empty where there is nothing to say
 };
 
 END_VISP_NAMESPACE

@@ -12,7 +12,8 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! How the sensor exposes and reads out its lines. A line is a row or a column of the picture, as `readout` says.
+//! How the sensor exposes and reads out its lines. A line is a row or a column of the picture, as `readout`
+//! says.
 struct VISP_EXPORT vpRollingShutter {
   enum class Readout { rows, rowsReversed, columns, columnsReversed };
 
@@ -26,34 +27,35 @@ struct VISP_EXPORT vpRollingShutter {
 };
 
 /*!
-  The software that made the delivered picture out of the sensor's: `nearest` as OpenCV's INTER_NEAREST (delivered
-  pixel k is sensor pixel floor(k s), s the ratio of the sizes), `area` the mean over s x s sensor pixels.
-  The one place that knows what a resize does to pixel positions.
+  The software that made the delivered picture out of the sensor's: `nearest` as OpenCV's INTER_NEAREST
+  (delivered pixel k is sensor pixel floor(k s), s the ratio of the sizes), `area` the mean over s x s sensor
+  pixels. The one place that knows what a resize does to pixel positions.
 */
 struct VISP_EXPORT vpPictureResize {
   enum class Method { none, nearest, area };
 
   Method method = Method::none;
-  unsigned int sourceWidth = 0;  // pixels of the sensor's picture; unused where method is none
+  unsigned int sourceWidth = 0; // pixels of the sensor's picture; unused where method is none
   unsigned int sourceHeight = 0;
 
   /*!
-    Sensor coordinate (pixels, centres at integers) at which delivered pixel \e k of \e delivered in all takes its
-    value; \e source is the sensor's number of pixels along the same axis.
+    Sensor coordinate (pixels, centres at integers) at which delivered pixel \e k of \e delivered in all takes
+    its value; \e source is the sensor's number of pixels along the same axis.
   */
   double sensorPosition(unsigned int k, unsigned int delivered, unsigned int source) const;
 
   /*!
-    The affine rule sensor = scale * delivered + offset that a camera model needs. Nearest neighbour has no exact
-    one: its uneven steps average to this.
+    The affine rule sensor = scale * delivered + offset that a camera model needs. Nearest neighbour has no
+    exact one: its uneven steps average to this.
   */
   void sensorAxis(unsigned int delivered, unsigned int source, double &scale, double &offset) const;
 
   /*!
-    Camera parameters of the delivered picture from those of the sensor's full picture: px, py by the scale, u0, v0
-    by the resize's own pixel-centre rule. Distortion coefficients are in normalised units and stay.
+    Camera parameters of the delivered picture from those of the sensor's full picture: px, py by the scale,
+    u0, v0 by the resize's own pixel-centre rule. Distortion coefficients are in normalised units and stay.
   */
-  vpCameraParameters delivered(const vpCameraParameters &sensor, unsigned int width, unsigned int height) const;
+  vpCameraParameters delivered(const vpCameraParameters &sensor, unsigned int width,
+                               unsigned int height) const;
 };
 
 /*!
@@ -83,13 +85,14 @@ public:
   //! Exposure of one sensor line, s.
   double exposure() const { return m_exposure; }
 
-  //! Further averaging by an area resize: length of the box over neighbouring lines, s; 0 where there is none.
+  //! Further averaging by an area resize: length of the box over neighbouring lines, s; 0 where there is
+  //! none.
   double averaging() const { return m_averaging; }
 
   /*!
-    True position of pixel \e k across (`lines`) or along (`samples`) the lines, in delivered pixels: it differs from k
-    by up to half a pixel after a nearest-neighbour resize, by less than a tenth after an area resize by a ratio that
-    is no whole number, and is k otherwise.
+    True position of pixel \e k across (`lines`) or along (`samples`) the lines, in delivered pixels: it
+    differs from k by up to half a pixel after a nearest-neighbour resize, by less than a tenth after an area
+    resize by a ratio that is no whole number, and is k otherwise.
   */
   const std::vector<double> &linePositions() const { return m_linePosition; }
   const std::vector<double> &samplePositions() const { return m_samplePosition; }

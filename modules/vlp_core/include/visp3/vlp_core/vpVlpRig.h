@@ -18,14 +18,14 @@ BEGIN_VISP_NAMESPACE
   The camera as it sits on the robot: what a rig.yaml says.
 */
 struct VISP_EXPORT vpVlpRig {
-  std::string cameraFile;         // ViSP XML that the parameters came from, path as written in the rig file
-  std::string cameraName;         // name of the camera in that XML
-  vpCameraParameters camera;      // of the picture as delivered
-  unsigned int width = 0;         // pixels of the picture as delivered
+  std::string cameraFile;    // ViSP XML that the parameters came from, path as written in the rig file
+  std::string cameraName;    // name of the camera in that XML
+  vpCameraParameters camera; // of the picture as delivered
+  unsigned int width = 0;    // pixels of the picture as delivered
   unsigned int height = 0;
   vpRollingShutter shutter;
   vpPictureResize resize;
-  vpHomogeneousMatrix bMc;        // camera in the robot base frame
+  vpHomogeneousMatrix bMc;                                    // camera in the robot base frame
   Eigen::Vector3d translationSigma = Eigen::Vector3d::Zero(); // m
   Eigen::Vector3d rotationSigma = Eigen::Vector3d::Zero();    // rad, of roll, pitch, yaw
 
@@ -41,8 +41,8 @@ struct VISP_EXPORT vpVlpRig {
   static vpVlpRig load(const std::string &filename);
 
   /*!
-    Writes a rig.yaml that load() reads back, and beside it the camera XML of `cameraFile`. Both to temporary names
-    first, then renamed.
+    Writes a rig.yaml that load() reads back, and beside it the camera XML of `cameraFile`. Both to temporary
+    names first, then renamed.
   */
   void save(const std::string &filename) const;
 };

@@ -14,8 +14,9 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  A picture as its sensor read it: row y of the matrix is line y, whatever direction the readout runs in. Pictures read
-  along columns are transposed, so that all detection works along rows; u and v swap on the way in and out.
+  A picture as its sensor read it: row y of the matrix is line y, whatever direction the readout runs in.
+  Pictures read along columns are transposed, so that all detection works along rows; u and v swap on the way
+  in and out.
 */
 struct VISP_EXPORT vpLinePicture {
   cv::Mat_<unsigned char> grey; // lines x samples; a view of the picture where the readout runs along rows
@@ -33,36 +34,37 @@ struct VISP_EXPORT vpLedChord {
 };
 
 /*!
-  A region of interest that may hold a lamp (LED-ROI): its chords, one a lit line, in line order. Coordinates are lines and
-  samples of a vpLinePicture.
+  A region of interest that may hold a lamp (LED-ROI): its chords, one a lit line, in line order. Coordinates
+  are lines and samples of a vpLinePicture.
 */
 struct VISP_EXPORT vpLedRoi {
   std::vector<vpLedChord> chords;
-  cv::Rect box;            // x: samples, y: lines
-  double level = 0;        // grey value that its pixels exceed
-  double lampness = 0;     // 0 to 1: how much the chords look like one whole lamp
-  bool cutAcross = false;  // touches the first or last sample
-  bool cutAlong = false;   // touches the first or last line
+  cv::Rect box;           // x: samples, y: lines
+  double level = 0;       // grey value that its pixels exceed
+  double lampness = 0;    // 0 to 1: how much the chords look like one whole lamp
+  bool cutAcross = false; // touches the first or last sample
+  bool cutAlong = false;  // touches the first or last line
 };
 
 /*!
   Finds lamp-like regions over a whole picture, without a fixed threshold.
 
-  Grey levels rise in a geometric series from the picture's own noise floor. At each level the pixels above it form stripes
-  (connected regions), and stripes that face each other across a dark gap form groups: lamps, where dark stripes cut them
-  into pieces. Groups of neighbouring levels nest into a tree. From the tree come the regions whose chords look most like one
-  whole lamp: convex, on an ellipse or a quadrilateral, with a sharp edge. So a dim lamp beside a bright one and lamps joined
-  by their halos all get the level that suits them.
+  Grey levels rise in a geometric series from the picture's own noise floor. At each level the pixels above it
+  form stripes (connected regions), and stripes that face each other across a dark gap form groups: lamps,
+  where dark stripes cut them into pieces. Groups of neighbouring levels nest into a tree. From the tree come
+  the regions whose chords look most like one whole lamp: convex, on an ellipse or a quadrilateral, with a
+  sharp edge. So a dim lamp beside a bright one and lamps joined by their halos all get the level that suits
+  them.
 */
 class VISP_EXPORT vpLedRoiDetector
 {
 public:
-  double levelRatio = 1.4;     // between neighbouring levels, measured from the background
-  double noiseFactor = 6;      // lowest level, in standard deviations of the noise above the background
-  double maxDarkGap = 0.6;     // longest dark gap inside a lamp, as a share of its widest chord
-  int minWidth = 8;            // samples
-  int minHeight = 6;           // lines
-  double minContrast = 3;      // grey levels, lowest level above the background
+  double levelRatio = 1.4; // between neighbouring levels, measured from the background
+  double noiseFactor = 6;  // lowest level, in standard deviations of the noise above the background
+  double maxDarkGap = 0.6; // longest dark gap inside a lamp, as a share of its widest chord
+  int minWidth = 8;        // samples
+  int minHeight = 6;       // lines
+  double minContrast = 3;  // grey levels, lowest level above the background
 
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines) const;
 };

@@ -13,24 +13,26 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! Outline of a lamp and how blurred its edge is. Coordinates are samples (x, u) and lines (y, v) of a vpLinePicture.
+//! Outline of a lamp and how blurred its edge is. Coordinates are samples (x, u) and lines (y, v) of a
+//! vpLinePicture.
 struct VISP_EXPORT vpOutlineFit {
   vpLampOutline outline;
-  double blur = 0;           // px, standard deviation of the edge's spread
-  double background = 0;     // grey value just outside the lamp, median over its edge
-  double noise = 0;          // grey levels, standard deviation of pixels about the fit, median over the edge
+  double blur = 0;       // px, standard deviation of the edge's spread
+  double background = 0; // grey value just outside the lamp, median over its edge
+  double noise = 0;      // grey levels, standard deviation of pixels about the fit, median over the edge
 };
 
 /*!
   Fits a lamp's outline to the pixels about its edge, to sub-pixel accuracy and without bias from the stripes.
 
-  A rolling shutter multiplies each line of the lamp's blurred picture by what the lamp gave during that line's exposure:
-  I(u, v) = b + a D(u, v) on line v, where D is 1 inside the outline, 0 outside and a Gaussian edge between. Left and right end
-  of each line have their own a and b, whatever the lamp's waveform, an uneven emitter or a halo make them; these are
-  eliminated from the least squares in closed form (variable projection, Golub and Pereyra 1973, with Kaufman's
-  approximation of the Jacobian). What is left is the outline and the blur, by Gauss-Newton with weights that let go of ends
-  that do not fit (Tukey's biweight on each end's distance from the outline). Where the stripes leave the ellipse open, a
-  weak prior (axes equal within `shapeSigma`) closes it, and the covariance says so.
+  A rolling shutter multiplies each line of the lamp's blurred picture by what the lamp gave during that
+  line's exposure: I(u, v) = b + a D(u, v) on line v, where D is 1 inside the outline, 0 outside and a
+  Gaussian edge between. Left and right end of each line have their own a and b, whatever the lamp's waveform,
+  an uneven emitter or a halo make them; these are eliminated from the least squares in closed form (variable
+  projection, Golub and Pereyra 1973, with Kaufman's approximation of the Jacobian). What is left is the
+  outline and the blur, by Gauss-Newton with weights that let go of ends that do not fit (Tukey's biweight on
+  each end's distance from the outline). Where the stripes leave the ellipse open, a weak prior (axes equal
+  within `shapeSigma`) closes it, and the covariance says so.
 */
 class VISP_EXPORT vpOutlineFitter
 {
@@ -39,9 +41,9 @@ public:
   int maxIterations = 40;
 
   /*!
-    \param lines The picture as read out. \param linePositions, samplePositions True positions of its lines and samples
-    (vpLineTiming), pixels. \param roi Where the lamp is.
-    \return The ellipse or quadrilateral that fits better; a region where neither does.
+    \param lines The picture as read out. \param linePositions, samplePositions True positions of its lines
+    and samples (vpLineTiming), pixels. \param roi Where the lamp is. \return The ellipse or quadrilateral
+    that fits better; a region where neither does.
   */
   vpOutlineFit fit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
                    const std::vector<double> &samplePositions, const vpLedRoi &roi) const;
