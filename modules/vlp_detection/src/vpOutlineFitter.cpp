@@ -20,10 +20,47 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-//! Share of a pixel's light at signed distance \e d outside an edge of Gaussian spread \e blur.
-double edge(double d, double blur)
+//! Share of a pixel's light, and its derivatives by an outward shift of the edge and by the blur.
+struct Edge {
+  double share;
+  double byShift;
+  double byBlur;
+};
+
+/*!
+  A pixel whose middle lies \e d outside a straight edge of normal \e n and Gaussian spread \e blur. Integrating over
+  the pixel's square adds a box of width |n_x| and one of width |n_y| to the Gaussian: the share is the second
+  difference of the Gaussian's integral taken twice more. From a blur of half a pixel on, a Gaussian of the same
+  variance does as well.
+*/
+Edge edgeAt(double d, const Eigen::Vector2d &n, double blur)
 {
-  return 0.5 * std::erfc(d / (blur * M_SQRT2));
+  static const double boxes = 1.0 / 12; // px^2, variance of both
+  auto phi = [](double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); };
+  auto below = [](double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); };
+  static const double wide = 0.5;
+  const double spread = std::sqrt(blur * blur + boxes);
+  if (blur > wide || std::abs(d) > 1 + 4 * spread) {
+    const double z = -d / spread;
+    return {below(z), phi(z) / spread, -z * phi(z) * blur / (spread * spread)};
+  }
+  const double p = std::max(0.5 * std::abs(n.x()), 0.02);
+  const double q = std::max(0.5 * std::abs(n.y()), 0.02);
+  const double shift[4] = {p + q, p - q, q - p, -p - q};
+  static const double sign[4] = {1, -1, -1, 1};
+  Edge edge{0, 0, 0};
+  for (int i = 0; i < 4; ++i) {
+    const double z = (shift[i] - d) / blur;
+    const double once = z * below(z) + phi(z);
+    edge.share += sign[i] * 0.5 * (z * once + below(z));
+    edge.byShift += sign[i] * once;
+    edge.byBlur += sign[i] * below(z);
+  }
+  const double area = 4 * p * q;
+  edge.share *= blur * blur / area;
+  edge.byShift *= blur / area;
+  edge.byBlur *= blur / area; // heat equation: d/d blur = blur d^2/d shift^2
+  return edge;
 }
 
 double median(std::vector<double> values)
@@ -67,8 +104,11 @@ public:
 
   bool run(const cv::Rect &box, double shapeSigma, int maxIterations);
   vpOutlineFit result() const;
-  //! Mean squared residual of the ends that take part, grey levels^2.
+  //! Mean squared residual of all lit ends, the outliers among them too, grey levels^2; and how many pixels that is of.
   double misfit() const { return m_misfit; }
+  double pixels() const { return m_pixels; }
+  //! Chi-square of the shape's prior.
+  double prior() const { return m_prior; }
 
 private:
   std::optional<End> lineEnd(int line, double first, double last) const;
@@ -88,6 +128,9 @@ private:
   double m_background = 0;
   double m_noise = 0;
   double m_misfit = 0;
+  double m_pixels = 0;
+  double m_prior = 0;
+  double m_members = 0; // ends that take part
 };
 
 template <class Model>
@@ -107,13 +150,13 @@ std::optional<typename Fit<Model>::End> Fit<Model>::lineEnd(int line, double fir
   Eigen::VectorXd slope(n);
   for (int i = 0; i < n; ++i) {
     typename Model::Vector derivative;
-    const double d = m_model.distance({m_u[from + i], m_v[line]}, derivative);
-    const double z = d / m_blur;
-    const double density = std::exp(-0.5 * z * z) / (std::sqrt(2 * M_PI) * m_blur);
-    D(i) = edge(d, m_blur);
-    J.row(i) << -density * derivative.transpose(), density * z;
+    Eigen::Vector2d normal;
+    const double d = m_model.distance({m_u[from + i], m_v[line]}, derivative, normal);
+    const Edge edge = edgeAt(d, normal, m_blur);
+    D(i) = edge.share;
+    J.row(i) << -edge.byShift * derivative.transpose(), edge.byBlur;
     I(i) = row[from + i];
-    slope(i) = density; // derivative of D by an outward shift of the edge
+    slope(i) = edge.byShift;
   }
   if (D.maxCoeff() < 0.6 || D.minCoeff() > 0.4) {
     return std::nullopt; // the edge itself is not in it
@@ -150,6 +193,9 @@ void Fit<Model>::collect(int line, double v, std::vector<End> &ends) const
   }
   // Where the outline crosses the line at a slant, the same distance from the edge is a longer stretch.
   auto add = [&](double from, double to) {
+    if (!m_model.crossedWell(v, from <= first, to >= last)) {
+      return;
+    }
     if (auto end = lineEnd(line, from, to)) {
       ends.push_back(*end);
     }
@@ -195,13 +241,20 @@ void Fit<Model>::assemble(const std::vector<End> &ends, Eigen::MatrixXd &H, Eige
       backgrounds.push_back(ends[i].background);
     }
   }
-  const double scale = 4.685 * 1.4826 * std::max(median(offsets), 0.02);
+  const double scale = 1.4826 * std::max(median(offsets), 0.02);
   H = Eigen::MatrixXd::Zero(N, N);
   g = Eigen::VectorXd::Zero(N);
   double squares = 0, weights = 0, pixels = 0, chiSquare = 0, members = 0;
   for (size_t i = 0; i < ends.size(); ++i) {
-    const double z = ends[i].offset / scale;
-    if (!lit(i) || std::abs(z) >= 1) {
+    // An end is no outlier for being noisy: its own doubt widens the limit.
+    const double own = std::sqrt(std::max(variances[i], noise) / std::max(ends[i].offsetWeight, 1e-12));
+    const double z = ends[i].offset / (4.685 * std::max(scale, own));
+    if (!lit(i)) {
+      continue;
+    }
+    chiSquare += ends[i].squares;
+    pixels += ends[i].pixels;
+    if (std::abs(z) >= 1) {
       continue;
     }
     const double tukey = (1 - z * z) * (1 - z * z);
@@ -210,34 +263,44 @@ void Fit<Model>::assemble(const std::vector<End> &ends, Eigen::MatrixXd &H, Eige
     g += weight * ends[i].g;
     squares += weight * ends[i].offsetWeight * ends[i].offset * ends[i].offset;
     weights += weight * ends[i].offsetWeight;
-    chiSquare += tukey * ends[i].squares;
-    pixels += tukey * ends[i].pixels;
     members += tukey;
   }
   m_residual = weights > 0 ? std::sqrt(squares / weights) : 0;
   // Ends scatter more than their pixels' noise says where the edge is no Gaussian: the covariance is to say
-  // so.
-  m_inflation = members > N ? std::max(1.0, squares / (members - N)) : 1;
+  // so, and the fewer they are the less they know of their own scatter.
+  m_inflation = members > N ? std::max(1.0, squares / (members - N)) * (1 + 2 / (members - N)) : 3;
   m_background = median(backgrounds);
   m_noise = std::sqrt(noise);
   m_misfit = pixels > 0 ? chiSquare / pixels : 0;
+  m_pixels = pixels;
+  m_members = members;
 }
 
+/*!
+  Gauss-Newton from the start model. False where the lamp has no edge to fit: no ends that show one, a blur that
+  outgrows any lens, a middle that wanders off or stays unknown.
+*/
 template <class Model>
 bool Fit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations)
 {
+  static const double fewest = 3;     // ends
+  static const double still = 3e-4;   // px
+  static const double sharpest = 0.1; // px of blur; the pixels themselves hide anything sharper
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
   const double radius = m_model.radius();
-  m_blur = std::clamp(0.04 * radius, 0.8, 4.0);
+  const double widest = 0.15 * radius + 1;
+  const Eigen::Vector2d start = m_model.centre();
+  m_blur = std::clamp(0.03 * radius, 0.7, 4.0);
+  int soft = 0;
   for (int i = 0; i < maxIterations; ++i) {
     m_reach = std::clamp(3 * m_blur + 2, 4.0, std::max(4.0, 0.4 * m_model.radius()));
-    const std::vector<End> ends = lineEnds();
-    if (ends.size() < 4) {
+    assemble(lineEnds(), H, g);
+    soft = m_blur >= widest ? soft + 1 : 0;
+    if (m_members < fewest || soft > 2) {
       return false;
     }
-    assemble(ends, H, g);
-    m_model.addPrior(shapeSigma, H, g);
+    m_prior = m_model.addPrior(shapeSigma, H, g);
     H.diagonal().array() += 1e-9;
     Eigen::VectorXd step = H.ldlt().solve(g);
     if (!step.allFinite()) {
@@ -251,24 +314,31 @@ bool Fit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations)
     const typename Model::Vector outlineStep =
         step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
     m_model.advance(outlineStep);
-    m_blur =
-        std::clamp(m_blur + std::clamp(step(N - 1), -0.3 * m_blur, 0.5 * m_blur), 0.25, 0.25 * radius + 0.5);
-    if (!m_model.plausible(box)) {
+    const double blur = m_blur;
+    m_blur = std::clamp(blur + std::clamp(step(N - 1), -0.5 * blur, 0.5 * blur), sharpest, widest);
+    if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
       return false;
     }
-    if (outlineStep.cwiseAbs().maxCoeff() < 1e-4 && std::abs(step(N - 1)) < 1e-3) {
+    if (outlineStep.cwiseAbs().maxCoeff() < still && std::abs(m_blur - blur) < 10 * still) {
       break;
     }
   }
   m_covariance = m_inflation * H.inverse();
-  return m_covariance.allFinite() && m_covariance.diagonal().minCoeff() >= 0;
+  if (!m_covariance.allFinite() || m_covariance.diagonal().minCoeff() < 0) {
+    return false;
+  }
+  const double doubt = std::sqrt(m_model.outline(m_covariance).centreCovariance.trace());
+  return doubt < 0.3 * radius;
 }
 
 template <class Model>
 vpOutlineFit Fit<Model>::result() const
 {
   vpOutlineFit fit;
+  // No lens, sensor or picture format is known better than this.
+  static const double systematic = 0.004; // px
   fit.outline = m_model.outline(m_covariance);
+  fit.outline.centreCovariance += systematic * systematic * Eigen::Matrix2d::Identity();
   fit.outline.residual = m_residual;
   fit.blur = m_blur;
   fit.background = m_background;
@@ -292,30 +362,82 @@ vpLampOutline boxOf(const vpLedRoi &roi)
   return outline;
 }
 
+/*!
+  The likelier of the two shapes by chi-square, data and prior together. What thin stripes do not tell apart adds to the
+  covariance: the distance of the two middles, by the other shape's probability.
+*/
+vpOutlineFit likelier(const Fit<vpEllipseModel> &ellipse, const Fit<vpQuadrilateralModel> &sides)
+{
+  static const double commoner = 6; // chi-square: lamps are round unless they clearly are not
+  const double noise = std::max(std::min(ellipse.misfit(), sides.misfit()), 0.05);
+  const double pixels = std::min(ellipse.pixels(), sides.pixels());
+  const double gain = pixels * (ellipse.misfit() - sides.misfit()) / noise + ellipse.prior() - sides.prior() - commoner;
+  vpOutlineFit best = gain > 0 ? sides.result() : ellipse.result();
+  const vpOutlineFit other = gain > 0 ? ellipse.result() : sides.result();
+  const double doubt = 1 / (1 + std::exp(0.5 * std::abs(gain)));
+  const Eigen::Vector2d apart = other.outline.centre - best.outline.centre;
+  best.outline.centreCovariance += doubt * (other.outline.centreCovariance + apart * apart.transpose());
+  return best;
+}
+
+/*!
+  Thin stripes far apart show little of an outline: where they make an ellipse longer than lamps are seen, it may be another
+  shape altogether, and the middle lies anywhere along it.
+*/
+void addElongationDoubt(vpLampOutline &ellipse, const vpLedRoi &roi, double prior)
+{
+  static const double rare = 6; // chi-square of the shape's prior
+  if (prior > rare && roi.chords.size() < ellipse.b) {
+    const Eigen::Vector2d along(std::cos(ellipse.angle), std::sin(ellipse.angle));
+    const double doubt = 0.5 * (ellipse.a - ellipse.b);
+    ellipse.centreCovariance += doubt * doubt * along * along.transpose();
+  }
+}
+
+const double softMisfit = 0.15; // share of the radius, root mean square of chord ends about their ellipse
+
+//! A lamp that glows without an edge: the ellipse of its chords' ends is all there is to see.
+vpLampOutline softOutline(const vpEllipseModel &ends)
+{
+  static const double doubt = 0.06; // share of the radius
+  const double sigma = doubt * ends.radius();
+  return ends.outline(sigma * sigma * Eigen::MatrixXd::Identity(2, 2));
+}
+
 } // namespace
 
 vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
                                   const std::vector<double> &linePositions,
                                   const std::vector<double> &samplePositions, const vpLedRoi &roi) const
 {
-  const std::vector<cv::Point2f> ends = vpChordShape::outerEnds(roi, lines.cols);
   vpOutlineFit best;
   best.outline = boxOf(roi);
+  const bool fromBorderToBorder = roi.box.width >= lines.cols - 2 || roi.box.height >= lines.rows - 2;
+  if (fromBorderToBorder) {
+    return best;
+  }
+  const std::vector<cv::Point2f> ends = vpChordShape::outerEnds(roi, lines.cols);
   if (ends.size() < 6) {
     return best;
   }
-  Fit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, vpEllipseModel::from(ends, roi.box));
+  const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
+  const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
+  Fit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start);
   const bool isEllipse = ellipse.run(roi.box, shapeSigma, maxIterations);
   if (isEllipse) {
     best = ellipse.result();
+    addElongationDoubt(best.outline, roi, ellipse.prior());
   }
-  if (vpChordShape::rectangleMisfit(ends) > 1.5 * vpChordShape::ellipseMisfit(ends, roi.box)) {
-    return best;
+  if (vpChordShape::rectangleMisfit(ends) <= 3 * ellipseMisfit) {
+    Fit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions, vpQuadrilateralModel::from(ends));
+    if (sides.run(roi.box, shapeSigma, maxIterations)) {
+      best = isEllipse ? likelier(ellipse, sides) : sides.result();
+      return best;
+    }
   }
-  Fit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions, vpQuadrilateralModel::from(ends));
-  if (sides.run(roi.box, shapeSigma, maxIterations) &&
-      (!isEllipse || sides.misfit() < 0.8 * ellipse.misfit())) {
-    best = sides.result();
+  if (!isEllipse && ellipseMisfit < softMisfit * start.radius()) {
+    best.outline = softOutline(start);
+    best.blur = softMisfit * start.radius();
   }
   return best;
 }

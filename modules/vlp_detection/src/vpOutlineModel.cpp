@@ -26,6 +26,8 @@ Eigen::Matrix2d onEigenvalues(const Eigen::Matrix2d &A, F f)
   return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+const double alongLines = 0.12; // sine of seven degrees: sides closer to the lines' direction show no clear ends
+
 double wrapped(double angle)
 {
   return std::remainder(angle, 2 * M_PI);
@@ -59,13 +61,14 @@ vpEllipseModel vpEllipseModel::from(const std::vector<cv::Point2f> &points, cons
   return vpEllipseModel(middle, radius, radius, 0);
 }
 
-double vpEllipseModel::distance(const Eigen::Vector2d &x, Vector &derivative) const
+double vpEllipseModel::distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const
 {
   const Eigen::Vector2d y = m_shape * (x - m_centre);
   const double rho = std::max(y.norm(), 1e-6);
-  const Eigen::Vector2d normal = m_shape * y;
-  const double slope = std::max(normal.norm(), 1e-12); // |gradient of rho| times rho
-  derivative << -normal / slope, -rho * rho / slope, -0.5 * (y.x() * y.x() - y.y() * y.y()) / slope,
+  const Eigen::Vector2d gradient = m_shape * y;
+  const double slope = std::max(gradient.norm(), 1e-12); // |gradient of rho| times rho
+  normal = gradient / slope;
+  derivative << -normal, -rho * rho / slope, -0.5 * (y.x() * y.x() - y.y() * y.y()) / slope,
       -y.x() * y.y() / slope;
   return (rho - 1) * rho / slope;
 }
@@ -80,7 +83,7 @@ void vpEllipseModel::advance(const Vector &step)
   m_shape = onEigenvalues(M.transpose() * M, [](double e) { return std::sqrt(std::max(e, 1e-12)); });
 }
 
-void vpEllipseModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
+double vpEllipseModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
 {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(m_shape);
   const double logRatio = std::log(eigen.eigenvalues()(1) / eigen.eigenvalues()(0)); // log(a / b)
@@ -92,6 +95,7 @@ void vpEllipseModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd 
   H(4, 4) += weight;
   g(3) -= weight * logRatio * cos2;
   g(4) -= weight * logRatio * sin2;
+  return weight * logRatio * logRatio;
 }
 
 bool vpEllipseModel::stretch(double v, double distance, double &first, double &last) const
@@ -160,10 +164,18 @@ vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &
     model.m_angle[i] = r.angle * M_PI / 180 + i * M_PI / 2;
     model.m_offset[i] = 0.5 * (i % 2 == 0 ? r.size.width : r.size.height);
   }
+  for (int axis = 0; axis < 2; ++axis) {
+    model.m_middleSigma[axis] = model.m_scale;
+    if (std::abs(std::cos(model.m_angle[axis])) < alongLines) {
+      // Where the lamp is dark no line shows these sides: the lit lines lie anywhere between them.
+      const double hidden = model.m_offset[1 - axis] - model.m_offset[axis]; // half of what a square has more
+      model.m_middleSigma[axis] = std::max(0.3, 2 * hidden / std::sqrt(12.0));
+    }
+  }
   return model;
 }
 
-double vpQuadrilateralModel::distance(const Eigen::Vector2d &x, Vector &derivative) const
+double vpQuadrilateralModel::distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const
 {
   const Eigen::Vector2d d = x - m_inside;
   double farthest = -std::numeric_limits<double>::max();
@@ -175,8 +187,9 @@ double vpQuadrilateralModel::distance(const Eigen::Vector2d &x, Vector &derivati
       side = i;
     }
   }
+  normal = {std::cos(m_angle[side]), std::sin(m_angle[side])};
   derivative.setZero();
-  derivative(2 * side) = (-std::sin(m_angle[side]) * d.x() + std::cos(m_angle[side]) * d.y()) / m_scale;
+  derivative(2 * side) = (-normal.y() * d.x() + normal.x() * d.y()) / m_scale;
   derivative(2 * side + 1) = -1;
   return farthest;
 }
@@ -189,19 +202,26 @@ void vpQuadrilateralModel::advance(const Vector &step)
   }
 }
 
-void vpQuadrilateralModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
+double vpQuadrilateralModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
 {
+  double cost = 0;
   auto pull = [&](const Vector &direction, double value, double deviation) {
     const double weight = 1 / (deviation * deviation);
     H.topLeftCorner<parameters, parameters>() += weight * direction * direction.transpose();
     g.head<parameters>() -= weight * value * direction;
+    cost += weight * value * value;
   };
-  for (int i = 0; i < 4; ++i) { // neighbouring sides at right angles
-    const int j = (i + 1) % 4;
-    Vector direction = Vector::Zero();
-    direction(2 * i) = -1;
-    direction(2 * j) = 1;
-    pull(direction, m_scale * wrapped(m_angle[j] - m_angle[i] - M_PI / 2), sigma * m_scale);
+  static const double skew = 0.05;        // rad, between neighbouring sides
+  static const double convergence = 0.01; // rad, between opposite ones
+  for (int i = 0; i < 4; ++i) {
+    for (int apart = 1; apart <= (i < 2 ? 2 : 1); ++apart) {
+      const int j = (i + apart) % 4;
+      Vector direction = Vector::Zero();
+      direction(2 * i) = -1;
+      direction(2 * j) = 1;
+      pull(direction, m_scale * wrapped(m_angle[j] - m_angle[i] - apart * M_PI / 2),
+           (apart == 1 ? skew : convergence) * m_scale);
+    }
   }
   Vector direction = Vector::Zero(); // as high as wide
   direction(1) = direction(5) = 0.5;
@@ -211,8 +231,9 @@ void vpQuadrilateralModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::Vec
     direction.setZero();
     direction(1 + 2 * axis) = 0.5;
     direction(5 + 2 * axis) = -0.5;
-    pull(direction, 0.5 * (m_offset[axis] - m_offset[axis + 2]), m_scale);
+    pull(direction, 0.5 * (m_offset[axis] - m_offset[axis + 2]), m_middleSigma[axis]);
   }
+  return cost;
 }
 
 bool vpQuadrilateralModel::stretch(double v, double distance, double &first, double &last) const
@@ -233,6 +254,34 @@ bool vpQuadrilateralModel::stretch(double v, double distance, double &first, dou
     }
   }
   return first < last;
+}
+
+bool vpQuadrilateralModel::crossedWell(double v, bool first, bool last) const
+{
+  static const double fromCorner = 1.5; // px
+  double from = -1e9, to = 1e9;
+  int firstSide = -1, lastSide = -1;
+  for (int i = 0; i < 4; ++i) {
+    const double c = std::cos(m_angle[i]);
+    if (std::abs(c) < alongLines) {
+      continue;
+    }
+    const double u = m_inside.x() + (m_offset[i] - std::sin(m_angle[i]) * (v - m_inside.y())) / c;
+    if (c > 0 && u < to) {
+      to = u;
+      lastSide = i;
+    } else if (c < 0 && u > from) {
+      from = u;
+      firstSide = i;
+    }
+  }
+  const auto corners = cornersAt(Vector::Zero());
+  auto well = [&](int side) {
+    // Corner i lies between sides i and i + 1.
+    const double a = corners[(side + 3) % 4].y(), b = corners[side].y();
+    return v > std::min(a, b) + fromCorner && v < std::max(a, b) - fromCorner;
+  };
+  return (!first || (firstSide >= 0 && well(firstSide))) && (!last || (lastSide >= 0 && well(lastSide)));
 }
 
 std::array<Eigen::Vector2d, 4> vpQuadrilateralModel::cornersAt(const Vector &step) const

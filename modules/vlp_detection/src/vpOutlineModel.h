@@ -30,17 +30,21 @@ public:
   //! Best ellipse of points on the outline; a circle about \e box where they allow none.
   static vpEllipseModel from(const std::vector<cv::Point2f> &points, const cv::Rect &box);
 
-  double distance(const Eigen::Vector2d &x, Vector &derivative) const;
+  //! Signed distance of \e x; its derivative by the parameters; the outline's outward normal nearest to x.
+  double distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const;
   void advance(const Vector &step);
-  //! Weak prior towards a circle, added to normal equations H step = g.
-  void addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
+  //! Weak prior towards a circle, added to normal equations H step = g. Returns its own chi-square.
+  double addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
   //! Range of samples on line \e v at most \e distance outside (inside where negative) the outline; false:
   //! none.
   bool stretch(double v, double distance, double &first, double &last) const;
+  //! Whether line \e v crosses the outline at its first, its last end such that a straight edge models it.
+  bool crossedWell(double, bool, bool) const { return true; }
   void vertical(double &top, double &bottom) const;
   double radius() const;
+  Eigen::Vector2d centre() const { return m_centre; }
   bool plausible(const cv::Rect &box) const;
-  //! \param H Information matrix of the parameters, px and log units.
+  //! \param covariance Of the parameters, px and log units.
   vpLampOutline outline(const Eigen::MatrixXd &covariance) const;
 
 private:
@@ -58,13 +62,16 @@ public:
 
   static vpQuadrilateralModel from(const std::vector<cv::Point2f> &points);
 
-  double distance(const Eigen::Vector2d &x, Vector &derivative) const;
+  double distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const;
   void advance(const Vector &step);
-  //! Weak prior towards a square seen from about below.
-  void addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
+  //! Prior towards a square seen from about below, weakest on its sides' ratio.
+  double addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
   bool stretch(double v, double distance, double &first, double &last) const;
+  //! Whether line \e v crosses the outline at its first, its last end such that a straight edge models it.
+  bool crossedWell(double v, bool first, bool last) const;
   void vertical(double &top, double &bottom) const;
   double radius() const;
+  Eigen::Vector2d centre() const { return outline(Eigen::MatrixXd::Zero(parameters, parameters)).centre; }
   bool plausible(const cv::Rect &box) const;
   vpLampOutline outline(const Eigen::MatrixXd &covariance) const;
 
@@ -75,6 +82,8 @@ private:
   double m_scale = 1; // px, half the mean side
   std::array<double, 4> m_angle{};
   std::array<double, 4> m_offset{};
+  // px, how well the lit lines alone place the middle between sides 0 and 2, and between 1 and 3
+  std::array<double, 2> m_middleSigma{};
 };
 
 END_VISP_NAMESPACE

@@ -1,0 +1,66 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLedDetector_h
+#define vpLedDetector_h
+
+#include <vector>
+
+#include <visp3/detection/vpDetectorBase.h>
+#include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_core/vpLampObservation.h>
+#include <visp3/vlp_core/vpVlpRig.h>
+#include <visp3/vlp_detection/vpLedIdRecognizer.h>
+#include <visp3/vlp_detection/vpLedRoiDetector.h>
+#include <visp3/vlp_detection/vpOutlineFitter.h>
+#include <visp3/vlp_detection/vpStripeAnalyzer.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  LED-ID detection and recognition over a whole picture, the paper's section 2.1.1 and 2.1.2: LED-ROI, outline,
+  stripe features, id. As every vpDetectorBase it gives each region's corners (of its bounding box, or the four of
+  a quadrilateral) and its message (the lamp's id, empty where it is none of the map's). getCog() is the mean of the
+  corners; the projection of the lamp's middle is the observation's `point`.
+
+  \code
+  vpLedDetector detector(rig, map);
+  if (detector.detect(I)) {
+    for (const vpLampObservation &lamp : detector.observations()) {
+      ...
+    }
+  }
+  \endcode
+*/
+class VISP_EXPORT vpLedDetector : public vpDetectorBase
+{
+public:
+  vpLedRoiDetector roiDetector;
+  vpOutlineFitter outlineFitter;
+  vpStripeAnalyzer stripeAnalyzer;
+  vpLedIdRecognizer recognizer;
+
+  //! \throw vpException where the rig has no picture size.
+  vpLedDetector(const vpVlpRig &rig, const vpLampMap &map);
+
+  /*!
+    \return True where there is any lamp-like region. Times of the observations count from the start of the
+    frame. \throw vpException (dimensionError) where \e I has not the size that the rig states.
+  */
+  bool detect(const vpImage<unsigned char> &I) override;
+
+  //! Every lamp-like region of the last picture, the largest first.
+  const std::vector<vpLampObservation> &observations() const { return m_observations; }
+
+private:
+  vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi) const;
+
+  vpVlpRig m_rig;
+  vpLineTiming m_timing;
+  std::vector<vpLampObservation> m_observations;
+};
+
+END_VISP_NAMESPACE
+
+#endif

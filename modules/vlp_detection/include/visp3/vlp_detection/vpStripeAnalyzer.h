@@ -1,0 +1,56 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpStripeAnalyzer_h
+#define vpStripeAnalyzer_h
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <visp3/vlp_core/vpLampObservation.h>
+#include <visp3/vlp_core/vpRollingShutter.h>
+#include <visp3/vlp_detection/vpOutlineFitter.h>
+
+BEGIN_VISP_NAMESPACE
+
+//! The light of one lamp, line by line.
+struct VISP_EXPORT vpStripeProfile {
+  std::vector<double> time;  // s, middle of each line's exposure, after the start of the frame
+  std::vector<double> light; // grey levels above the lamp's surroundings, mean over the line
+  std::vector<double> sigma; // grey levels, of light by pixel noise
+  double exposure = 0;       // s, of each line, averaging by a resize included
+
+  /*!
+    Profile inside an outline (in samples and lines, as the fitter gives it). Of a lamp with a soft edge only the middle
+    strip counts, where its glow is even.
+  */
+  static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing, const vpOutlineFit &fit);
+};
+
+/*!
+  What the stripes say: maximum likelihood over the line profile.
+
+  A lamp's light on the line exposed about t is o + exp(c_0 + c_1 y + ...) S(t): the waveform averaged over the exposure, which
+  weighs harmonic k by sinc(k f T_e), times the emitter's envelope along the lines, a polynomial in its logarithm. A
+  periodogram gives the starts; Gauss-Newton then fits frequency, phase, duty, exposure, offset and envelope together. The
+  exposure has the rig's value as prior, since blur and a phone's tone curve soften the edges as well. The variance of a line is
+  that of its pixels plus a share of its light, for all that the model leaves out.
+*/
+class VISP_EXPORT vpStripeAnalyzer
+{
+public:
+  double modelError = 0.03;          // share of a line's light that the model may be off by, standard deviation
+  double exposureTolerance = 0.5;    // standard deviation of the exposure about the rig's, as a share of it
+  double maxMisfit = 0.2;            // share of the stripes' power that a pwm or twoPulse lamp may leave unexplained
+  double minModulation = 0.05;       // depth of stripes below which a lamp counts as unmodulated
+  bool searchTwoPulses = true;       // off where no lamp of the map is one: a search of tens of milliseconds
+  double minSignificance = 30;       // gain in chi-square by which a sinusoid has to beat a plain lamp
+
+  //! Signal, frequency, duty, phase difference, stripes, modulation, misfit; area is left to the caller.
+  vpStripeFeatures analyze(const vpStripeProfile &profile) const;
+};
+
+END_VISP_NAMESPACE
+
+#endif

@@ -1,0 +1,124 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_detection/vpLedDetector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include <visp3/core/vpException.h>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+
+//! Takes an outline from samples and lines of a transposed picture back to u and v.
+vpLampOutline swapped(vpLampOutline outline)
+{
+  std::swap(outline.centre.x(), outline.centre.y());
+  outline.angle = std::remainder(M_PI / 2 - outline.angle, M_PI);
+  for (Eigen::Vector2d &corner : outline.corners) {
+    std::swap(corner.x(), corner.y());
+  }
+  std::swap(outline.centreCovariance(0, 0), outline.centreCovariance(1, 1));
+  return outline;
+}
+
+//! Lit pixels of a region, and the share of them at the end of the grey scale.
+void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObservation &lamp)
+{
+  static const int nearlyWhite = 254; // of JPEG's white, too
+  int pixels = 0, white = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    const unsigned char *row = picture.grey[chord.line];
+    for (int x = chord.first; x <= chord.last; ++x) {
+      pixels += row[x] > roi.level;
+      white += row[x] >= nearlyWhite;
+    }
+  }
+  lamp.features.area = pixels;
+  lamp.saturated = pixels > 0 ? static_cast<double>(white) / pixels : 0;
+}
+
+//! The vertical of a robot that stands level, in the camera's frame.
+Eigen::Vector3d verticalInCamera(const vpHomogeneousMatrix &bMc)
+{
+  return {bMc[2][0], bMc[2][1], bMc[2][2]};
+}
+
+std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
+{
+  std::vector<vpImagePoint> corners;
+  if (outline.shape == vpLampOutline::Shape::quadrilateral) {
+    for (const Eigen::Vector2d &corner : outline.corners) {
+      corners.emplace_back(corner.y(), corner.x());
+    }
+  } else {
+    const Eigen::Vector4d box = outline.box();
+    corners = {{box(1), box(0)}, {box(1), box(2)}, {box(3), box(2)}, {box(3), box(0)}};
+  }
+  return corners;
+}
+
+} // namespace
+
+vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
+    : recognizer(map, rig.shutter), m_rig(rig)
+{
+  if (rig.width == 0 || rig.height == 0) {
+    throw vpException(vpException::badValue, "rig: picture size is 0, expected the camera's width and height");
+  }
+  m_timing = rig.lineTiming();
+  stripeAnalyzer.searchTwoPulses =
+      std::any_of(map.lamps.begin(), map.lamps.end(),
+                  [](const vpLamp &lamp) { return lamp.modulation.kind == vpModulation::Kind::twoPulse; });
+}
+
+bool vpLedDetector::detect(const vpImage<unsigned char> &I)
+{
+  if (I.getWidth() != m_rig.width || I.getHeight() != m_rig.height) {
+    std::ostringstream message;
+    message << "picture is " << I.getWidth() << " x " << I.getHeight() << " pixels, expected " << m_rig.width << " x "
+            << m_rig.height << " as the rig's camera says";
+    throw vpException(vpException::dimensionError, message.str());
+  }
+  const vpLinePicture picture(I, m_rig.shutter.alongColumns());
+  m_observations.clear();
+  for (const vpLedRoi &roi : roiDetector.detect(picture.grey)) {
+    m_observations.push_back(observe(picture, roi));
+  }
+  std::stable_sort(
+      m_observations.begin(), m_observations.end(),
+      [](const vpLampObservation &a, const vpLampObservation &b) { return a.features.area > b.features.area; });
+
+  m_polygon.clear();
+  m_message.clear();
+  for (const vpLampObservation &lamp : m_observations) {
+    m_polygon.push_back(cornersOf(lamp.outline));
+    m_message.push_back(lamp.id);
+  }
+  m_nb_objects = m_observations.size();
+  return m_nb_objects > 0;
+}
+
+vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi) const
+{
+  vpLampObservation lamp;
+  const vpOutlineFit fit =
+      outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(), roi);
+  lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit));
+  measureArea(picture, roi, lamp);
+  lamp.outline = picture.transposed ? swapped(fit.outline) : fit.outline;
+  lamp.point = lamp.outline.middle(m_rig.camera, verticalInCamera(m_rig.bMc));
+  lamp.covariance = lamp.outline.centreCovariance;
+  lamp.time = m_timing.middleAt(picture.transposed ? lamp.point.x() : lamp.point.y());
+  lamp.cut = roi.cutAcross || roi.cutAlong;
+  recognizer.recognize(lamp);
+  return lamp;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,59 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLampConsensus_h
+#define vpLampConsensus_h
+
+#include <functional>
+#include <vector>
+
+#include <visp3/vlp_localization/vpVlpFix.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  Which of the lamps seen agree on one pose. A lamp with the wrong id, a reflection, a lamp that hangs elsewhere than
+  the map says: each spoils the pose, and no covariance shows it.
+*/
+class vpLampConsensus
+{
+public:
+  using Solve = std::function<vpVlpFix(const std::vector<vpLampSight> &)>;
+
+  vpLampConsensus(const vpLampMap &map, const vpVlpRig &rig, const std::vector<vpLampObservation> &observations,
+                  double mapTolerance, double outlierLikelihood);
+
+  /*!
+    Observations with an id that no other one has, whose place is known to a fraction of the lamp. Sets the remark of
+    the others.
+  */
+  static std::vector<size_t> usable(std::vector<vpLampObservation> &observations);
+
+  /*!
+    The pose of all usable lamps where their residuals are likely under all stated doubts and `mapTolerance`. Otherwise
+    that of all but one, where leaving out that one alone makes the others agree and they can check each other;
+    otherwise a refusal. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up to what they
+    show (Birge's ratio).
+  */
+  vpVlpFix solve(const std::vector<size_t> &usable, const Solve &solver) const;
+
+  //! Sets `accepted` of the lamps of the fix and the remark of usable lamps that are not among them.
+  static void explain(const vpVlpFix &fix, const std::vector<size_t> &usable,
+                      std::vector<vpLampObservation> &observations);
+
+private:
+  std::vector<vpLampSight> sights(const std::vector<size_t> &which, double leastPositionSigma) const;
+  bool agree(const vpVlpFix &fix) const;
+  bool sizesFit(const vpVlpFix &fix) const;
+
+  const vpLampMap &m_map;
+  const vpVlpRig &m_rig;
+  const std::vector<vpLampObservation> &m_observations;
+  double m_tolerance;  // m
+  double m_likelihood; // probability of residuals below which lamps disagree
+};
+
+END_VISP_NAMESPACE
+
+#endif
