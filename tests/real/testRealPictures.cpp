@@ -2,63 +2,211 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// Lamps of the real pictures: found, with their outlines where set.yaml says they are.
+// Real pictures of the robot's own kind of rig and of phones: ids, positions and refusals that they allow to check.
 
-#include <cstdlib>
-#include <iostream>
-#include <numeric>
+#include "realSet.h"
 
-#include <gtest/gtest.h>
-#include <visp3/vlp_detection/vpOutlineFitter.h>
-#include <visp3/vlp_sensor/vpReadGreyPicture.h>
-#include <yaml-cpp/yaml.h>
-
-#ifdef ENABLE_VISP_NAMESPACE
-using namespace VISP_NAMESPACE_NAME;
-#endif
+#include <cmath>
 
 namespace
 {
 
-std::vector<vpLampOutline> outlines(const std::string &file)
+double degrees(double radians)
 {
-  vpImage<unsigned char> I;
-  vpReadGreyPicture(file, I);
-  const vpLinePicture picture(I, false);
-  std::vector<double> lines(picture.grey.rows), samples(picture.grey.cols);
-  std::iota(lines.begin(), lines.end(), 0.0);
-  std::iota(samples.begin(), samples.end(), 0.0);
-  std::vector<vpLampOutline> found;
-  for (const vpLedRoi &roi : vpLedRoiDetector().detect(picture.grey)) {
-    found.push_back(vpOutlineFitter().fit(picture.grey, lines, samples, roi).outline);
-  }
-  return found;
+  return std::remainder(radians, 2 * M_PI) * 180 / M_PI;
 }
 
-TEST(RealPictures, Ub300CentresWithinOnePixelAndAHalf)
+double yawOf(const vpHomogeneousMatrix &M)
 {
-  const char *folder = std::getenv("VLP_INPUT_IMAGE_PATH");
-  if (folder == nullptr) {
-    std::cout << "real pictures used: 0 (VLP_INPUT_IMAGE_PATH is not set)\n";
-    return;
+  return std::atan2(M[1][0], M[0][0]);
+}
+
+double mean(const std::vector<double> &values)
+{
+  double sum = 0;
+  for (double value : values) {
+    sum += value;
   }
-  const std::string set = std::string(folder) + "/ub300/";
-  int pictures = 0;
-  for (const YAML::Node &image : YAML::LoadFile(set + "set.yaml")["images"]) {
-    const auto file = image["file"].as<std::string>();
-    const auto found = outlines(set + file);
-    EXPECT_EQ(found.size(), image["lamps_px"].size()) << file;
-    for (const auto &lamp : image["lamps_px"]) {
-      const Eigen::Vector2d centre(lamp.second[0].as<double>(), lamp.second[1].as<double>());
-      double nearest = 1e9;
-      for (const vpLampOutline &outline : found) {
-        nearest = std::min(nearest, (outline.centre - centre).norm());
-      }
-      EXPECT_LT(nearest, 1.5) << file << ", lamp " << lamp.first.as<std::string>();
+  return sum / static_cast<double>(values.size());
+}
+
+double deviation(const std::vector<double> &values)
+{
+  const double middle = mean(values);
+  double sum = 0;
+  for (double value : values) {
+    sum += (value - middle) * (value - middle);
+  }
+  return std::sqrt(sum / static_cast<double>(values.size() - 1));
+}
+
+TEST(Ub300, SixOfSixIdsWhateverExposureIsClaimed)
+{
+  VLP_REAL_SET(set, "ub300");
+  for (double exposure : {20e-6, 40e-6, 100e-6, 160e-6}) {
+    size_t right = 0;
+    for (const YAML::Node &image : set.images()) {
+      const vpVlpFrame frame = set.frame(image);
+      vpVlpLocalizer localizer(set.rig(image, frame, exposure), set.map());
+      const vpVlpLocation location = localizer.process(frame);
+      right += set.expectIds(image, location.observations, 1.5); // px, set.yaml's centres are good to 1
+      EXPECT_EQ(location.observations.size(), set.lampsIn(image)) << frame.name;
     }
-    ++pictures;
+    EXPECT_EQ(right, 6u) << "exposure " << exposure;
   }
-  std::cout << "real pictures used: " << pictures << "\n";
+}
+
+//! Picture with a recorded position, its camera at the base: the pose's error in metres and degrees.
+void expectUb300(const YAML::Node &image, const vpVlpFix &fix, const std::string &lamps, double metres, double turn)
+{
+  ASSERT_TRUE(fix.valid) << fix.refusal;
+  const YAML::Node place = image["camera_xy_m"];
+  const double error =
+      std::hypot(fix.wMc[0][3] - place[0].as<double>(), fix.wMc[1][3] - place[1].as<double>());
+  const double recorded = (image["robot_yaw_deg"].as<double>() + 180) * M_PI / 180; // of the camera's x axis
+  const double yaw = degrees(yawOf(fix.wMc) - recorded);
+  std::cout << image["file"] << ", lamps " << lamps << ": " << 100 * error << " cm, " << yaw << " degrees\n";
+  EXPECT_LT(error, metres) << lamps;
+  EXPECT_LT(std::abs(yaw), turn) << lamps;
+}
+
+TEST(Ub300, RecordedPositionFromAllLampsAndFromEachPair)
+{
+  VLP_REAL_SET(set, "ub300");
+  const vpLampMap map = set.map();
+  for (const YAML::Node &image : set.images()) {
+    const vpVlpFrame frame = set.frame(image);
+    const vpVlpRig rig = set.rig(image, frame);
+    vpVlpLocalizer all(rig, map);
+    const vpVlpLocation location = all.process(frame);
+    expectUb300(image, location.fix, "all", 0.025, 2.5);
+    for (size_t left = 0; left < map.lamps.size(); ++left) {
+      vpLampMap pair = map;
+      pair.lamps.erase(pair.lamps.begin() + static_cast<long>(left));
+      vpVlpLocalizer two(rig, pair);
+      two.solver = vpVlpLocalizer::Solver::two;
+      const vpVlpLocation of = two.process(frame);
+      expectUb300(image, of.fix, pair.lamps[0].id + pair.lamps[1].id, 0.04, 3);
+      EXPECT_EQ(of.fix.lamps.size(), 2u);
+    }
+  }
+}
+
+TEST(Ub300, TwoSolverTakesTheBestPair)
+{
+  VLP_REAL_SET(set, "ub300");
+  const YAML::Node image = set.images()[0];
+  const vpVlpFrame frame = set.frame(image);
+  vpVlpLocalizer localizer(set.rig(image, frame), set.map());
+  localizer.solver = vpVlpLocalizer::Solver::two;
+  expectUb300(image, localizer.process(frame).fix, "best pair", 0.04, 3);
+}
+
+TEST(LumiaRoom, EightOfEightIdsAlongRowsAndColumns)
+{
+  VLP_REAL_SET(set, "lumia-room");
+  size_t right = 0;
+  for (const YAML::Node &image : set.images()) {
+    const vpVlpFrame frame = set.frame(image);
+    vpVlpLocalizer localizer(set.rig(image, frame), set.map());
+    right += set.expectIds(image, localizer.process(frame).observations, 30);
+  }
+  EXPECT_EQ(right, 8u);
+}
+
+TEST(LumiaRoom, RecordedPositionWithMountAndWithFreeAttitude)
+{
+  VLP_REAL_SET(set, "lumia-room");
+  const YAML::Node image = set.images()[0];
+  ASSERT_TRUE(image["camera_position_m"]);
+  const vpVlpFrame frame = set.frame(image);
+  vpVlpLocalizer localizer(set.rig(image, frame), set.map());
+  for (auto attitude : {vpManyLampSolver::Attitude::mount, vpManyLampSolver::Attitude::free}) {
+    localizer.manyLamps.attitude = attitude;
+    const vpVlpFix fix = localizer.process(frame).fix;
+    ASSERT_TRUE(fix.valid) << fix.refusal;
+    EXPECT_FALSE(fix.ambiguous);
+    EXPECT_EQ(fix.lamps.size(), 5u);
+    const YAML::Node place = image["camera_position_m"];
+    const double error =
+        std::hypot(fix.wMc[0][3] - place[0].as<double>(), fix.wMc[1][3] - place[1].as<double>());
+    std::cout << frame.name << ", attitude " << (attitude == vpManyLampSolver::Attitude::mount ? "mount" : "free")
+              << ": " << 100 * error << " cm\n";
+    EXPECT_LT(error, 0.035);
+  }
+}
+
+TEST(LumiaFloor, FifteenOfFifteenIds)
+{
+  VLP_REAL_SET(set, "lumia-floor");
+  size_t right = 0;
+  for (const YAML::Node &image : set.images()) {
+    const vpVlpFrame frame = set.frame(image);
+    vpVlpLocalizer localizer(set.rig(image, frame), set.map());
+    right += set.expectIds(image, localizer.process(frame).observations, 30);
+  }
+  EXPECT_EQ(right, 15u);
+}
+
+TEST(Ub300Coded, EveryLampCodedInEveryFrameAndSteady)
+{
+  VLP_REAL_SET(set, "ub300-coded");
+  RealSet ub300("ub300");
+  std::vector<Eigen::Vector2d> first; // lamps of the first frame
+  std::vector<std::vector<double>> u, v;
+  for (const YAML::Node &image : set.images()) {
+    const vpVlpFrame frame = set.frame(image);
+    vpVlpLocalizer localizer(set.rig(image, frame), ub300.map());
+    const vpVlpLocation location = localizer.process(frame);
+    EXPECT_FALSE(location.fix.valid);
+    ASSERT_EQ(location.observations.size(), 3u) << frame.name;
+    for (const vpLampObservation &lamp : location.observations) {
+      EXPECT_EQ(lamp.features.signal, vpStripeFeatures::Signal::coded) << frame.name;
+      EXPECT_TRUE(lamp.id.empty());
+      EXPECT_FALSE(lamp.accepted);
+      EXPECT_NE(lamp.remark.find("coded"), std::string::npos);
+      size_t k = 0;
+      while (k < first.size() && (first[k] - lamp.point).norm() > 20) {
+        ++k;
+      }
+      if (k == first.size()) {
+        first.push_back(lamp.point);
+        u.emplace_back();
+        v.emplace_back();
+      }
+      u[k].push_back(lamp.point.x());
+      v[k].push_back(lamp.point.y());
+    }
+  }
+  ASSERT_EQ(first.size(), 3u);
+  for (size_t k = 0; k < first.size(); ++k) {
+    ASSERT_EQ(u[k].size(), 6u);
+    std::cout << "coded lamp at " << first[k].transpose() << ": standard deviation " << deviation(u[k]) << ", "
+              << deviation(v[k]) << " px\n";
+    EXPECT_LT(deviation(u[k]), 0.3);
+    EXPECT_LT(deviation(v[k]), 0.3);
+  }
+}
+
+TEST(RowTime, PeriodOfStripesOverTheWholePicture)
+{
+  VLP_REAL_SET(set, "row-time");
+  vpLamp lamp;
+  lamp.id = "light";
+  lamp.modulation.kind = vpModulation::Kind::pwm;
+  const vpLampMap map{{lamp}};
+  for (const YAML::Node &image : set.images()) {
+    const vpVlpFrame frame = set.frame(image);
+    const vpVlpRig rig = set.rig(image, frame);
+    vpLedDetector detector(rig, map);
+    ASSERT_TRUE(detector.detect(frame.I));
+    ASSERT_EQ(detector.observations().size(), 1u);
+    const double frequency = detector.observations()[0].features.frequency;
+    const double expected = image["frequency_hz"].as<double>();
+    std::cout << frame.name << ": period " << 1 / frequency / rig.shutter.rowTime << " rows, "
+              << 100 * (expected / frequency - 1) << " % off\n";
+    EXPECT_NEAR(frequency, expected, 0.003 * expected) << frame.name;
+  }
 }
 
 } // namespace

@@ -117,7 +117,7 @@ vpLineTiming::vpLineTiming(const vpRollingShutter &shutter, const vpPictureResiz
   resize.sensorAxis(lines, sourceLines, scale, offset);
   m_lineTime = (shutter.reversed() ? -scale : scale) * shutter.rowTime;
   if (resize.method == vpPictureResize::Method::area && sourceLines > lines) {
-    m_averaging = scale * shutter.rowTime;
+    m_averaging = std::sqrt(scale * scale - 1) * shutter.rowTime; // one line's own row is in it already
   }
 
   const unsigned int sensorLines = resize.method == vpPictureResize::Method::none ? lines : sourceLines;

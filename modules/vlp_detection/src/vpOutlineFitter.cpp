@@ -104,6 +104,8 @@ public:
 
   bool run(const cv::Rect &box, double shapeSigma, int maxIterations);
   vpOutlineFit result() const;
+  //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc.
+  double evenness() const;
   //! Mean squared residual of all lit ends, the outliers among them too, grey levels^2; and how many pixels that is of.
   double misfit() const { return m_misfit; }
   double pixels() const { return m_pixels; }
@@ -332,6 +334,32 @@ bool Fit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations)
 }
 
 template <class Model>
+double Fit<Model>::evenness() const
+{
+  double top, bottom, edges = 0, peaks = 0;
+  m_model.vertical(top, bottom);
+  const int from = std::max(0, static_cast<int>(std::ceil(top)));
+  const int to = std::min(m_lines.rows - 1, static_cast<int>(std::floor(bottom)));
+  for (int line = from; line <= to; ++line) {
+    std::vector<End> ends;
+    collect(line, m_v[line], ends);
+    double first, last;
+    if (ends.empty() || !m_model.stretch(m_v[line], 0, first, last)) {
+      continue;
+    }
+    const unsigned char *row = m_lines[line];
+    const int left = std::max(0, static_cast<int>(first));
+    const int right = std::min(m_lines.cols - 1, static_cast<int>(last) + 1);
+    const double peak = left < right ? *std::max_element(row + left, row + right + 1) : 0.0;
+    for (const End &end : ends) {
+      edges += std::max(0.0, end.amplitude);
+      peaks += std::max(0.0, peak - end.background);
+    }
+  }
+  return peaks > 0 ? edges / peaks : 0;
+}
+
+template <class Model>
 vpOutlineFit Fit<Model>::result() const
 {
   vpOutlineFit fit;
@@ -395,13 +423,28 @@ void addElongationDoubt(vpLampOutline &ellipse, const vpLedRoi &roi, double prio
 }
 
 const double softMisfit = 0.15; // share of the radius, root mean square of chord ends about their ellipse
+const double evenEdge = 0.45;   // evenness below which a lamp glows about a bright core
 
-//! A lamp that glows without an edge: the ellipse of its chords' ends is all there is to see.
-vpLampOutline softOutline(const vpEllipseModel &ends)
+/*!
+  A lamp that glows about a bright core: its glow, or a housing that it lights, may lie anywhere about it. Its middle is
+  that of its light. Across the lines stripes weigh on it a little.
+*/
+void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 {
-  static const double doubt = 0.06; // share of the radius
-  const double sigma = doubt * ends.radius();
-  return ends.outline(sigma * sigma * Eigen::MatrixXd::Identity(2, 2));
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weight = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    for (int x = chord.first; x <= chord.last; ++x) {
+      const double light = std::max(0.0, lines(chord.line, x) - roi.level);
+      sum += light * Eigen::Vector2d(x, chord.line);
+      weight += light;
+    }
+  }
+  if (weight > 0) {
+    outline.centre = sum / weight;
+  }
+  static const Eigen::Vector2d doubt(0.04, 0.06); // share of the radius, standard deviation
+  outline.centreCovariance = (0.5 * outline.diameter() * doubt).cwiseAbs2().asDiagonal();
 }
 
 } // namespace
@@ -428,16 +471,20 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     best = ellipse.result();
     addElongationDoubt(best.outline, roi, ellipse.prior());
   }
+  bool even = isEllipse && ellipse.evenness() > evenEdge;
   if (vpChordShape::rectangleMisfit(ends) <= 3 * ellipseMisfit) {
     Fit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions, vpQuadrilateralModel::from(ends));
-    if (sides.run(roi.box, shapeSigma, maxIterations)) {
-      best = isEllipse ? likelier(ellipse, sides) : sides.result();
-      return best;
+    if (sides.run(roi.box, shapeSigma, maxIterations) && sides.evenness() > evenEdge) {
+      best = even ? likelier(ellipse, sides) : sides.result();
+      even = true;
     }
   }
-  if (!isEllipse && ellipseMisfit < softMisfit * start.radius()) {
-    best.outline = softOutline(start);
-    best.blur = softMisfit * start.radius();
+  if (!even && (isEllipse || ellipseMisfit < softMisfit * start.radius())) {
+    if (!isEllipse) {
+      best.outline = start.outline(Eigen::MatrixXd::Zero(2, 2));
+      best.blur = softMisfit * start.radius();
+    }
+    centreOnLight(best.outline, lines, roi);
   }
   return best;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Cholesky>
@@ -200,11 +201,19 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const std::v
 {
   std::optional<vpWaveformFit> best;
   for (const Candidate &candidate : candidates) {
-    for (double duty : {0.25, 0.5, 0.75}) {
-      vpWaveformFit fit(profile, settings);
-      // The first harmonic peaks in the middle of the pulse.
-      if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, envelope) && fit.preferStatedExposure()) {
-        keepBetter(best, std::move(fit));
+    std::vector<double> exposures{profile.exposure};
+    static const double longExposure = 0.3; // periods: it may be misstated, and from there no way leads to sharp stripes
+    if (profile.exposure * candidate.frequency > longExposure) {
+      exposures.push_back(0.1 / candidate.frequency);
+    }
+    for (double exposure : exposures) {
+      for (double duty : {0.25, 0.5, 0.75}) {
+        vpWaveformFit fit(profile, settings);
+        // The first harmonic peaks in the middle of the pulse.
+        if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, envelope, exposure) &&
+            fit.preferStatedExposure()) {
+          keepBetter(best, std::move(fit));
+        }
       }
     }
   }
@@ -334,6 +343,9 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   if (!(features.misfit < maxMisfit)) {
     features.signal = vpStripeFeatures::Signal::coded;
+    const double none = std::numeric_limits<double>::quiet_NaN(); // what was fitted is not what it sends
+    features.frequency = features.frequencySigma = features.duty = features.dutySigma = none;
+    features.phaseDifference = features.phaseDifferenceSigma = none;
   }
   return features;
 }

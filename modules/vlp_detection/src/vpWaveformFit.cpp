@@ -203,14 +203,18 @@ bool vpWaveformFit::preferStatedExposure()
     return true;
   }
   const double pulse = m_x(duty) / m_x(frequency); // s
-  const double exposed = m_x(exposure) * m_x(frequency); // periods
+  static const double wholePeriod = 0.98;
+  double exposed = m_x(exposure) * m_x(frequency); // periods
   auto unlikely = [this](double time, double share) {
     static const double misstated = 0.5; // of the exposure's logarithm, standard deviation
     static const double usual = 0.2;     // of the duty
     return std::hypot(std::log(time / m_profile.exposure) / misstated, (share - 0.5) / usual);
   };
-  if (unlikely(m_x(exposure), m_x(duty)) <= unlikely(pulse, exposed) || exposed > 0.98) {
+  if (unlikely(m_x(exposure), m_x(duty)) <= unlikely(pulse, std::min(exposed, wholePeriod))) {
     return true;
+  }
+  if (exposed > wholePeriod) {
+    exposed = 0.5; // no pulse, only a start for one
   }
   Eigen::VectorXd swapped = m_x;
   swapped(duty) = exposed;

@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include <Eigen/LU>
 
 BEGIN_VISP_NAMESPACE
 
@@ -37,6 +38,12 @@ std::string joined(const std::vector<std::string> &ids)
     text += (text.empty() ? "" : ", ") + id;
   }
   return text;
+}
+
+//! Along the camera's axis, m.
+double depthOf(const Eigen::Vector3d &p, const vpHomogeneousMatrix &cMw)
+{
+  return cMw[2][0] * p.x() + cMw[2][1] * p.y() + cMw[2][2] * p.z() + cMw[2][3];
 }
 
 vpVlpFix refusal(const std::string &reason)
@@ -79,20 +86,36 @@ std::vector<size_t> vpLampConsensus::usable(std::vector<vpLampObservation> &obse
   return which;
 }
 
-std::vector<vpLampSight> vpLampConsensus::sights(const std::vector<size_t> &which, double leastPositionSigma) const
+std::vector<vpLampSight> vpLampConsensus::sights(const std::vector<size_t> &which) const
 {
   std::vector<vpLampSight> lamps;
   for (size_t i : which) {
-    const vpLamp &lamp = *m_map.find(m_observations[i].id);
-    lamps.push_back(vpLampSight::from(lamp, m_observations[i], m_rig.camera));
-    lamps.back().positionSigma = std::max(lamps.back().positionSigma, leastPositionSigma);
+    lamps.push_back(vpLampSight::from(*m_map.find(m_observations[i].id), m_observations[i], m_rig.camera));
   }
   return lamps;
 }
 
-bool vpLampConsensus::agree(const vpVlpFix &fix) const
+/*!
+  Chi-square of a fix's residuals under the rays' doubt and the map's tolerance. The fix minimises another sum, so this
+  is no less than the least there is.
+*/
+double vpLampConsensus::misfit(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const
 {
-  return fix.valid && chiSquareTail(fix.chiSquare, fix.degreesOfFreedom) > m_likelihood && sizesFit(fix);
+  const vpHomogeneousMatrix cMw = fix.wMc.inverse();
+  double sum = 0;
+  for (size_t i = 0; i < fix.lamps.size(); ++i) {
+    const auto lamp = std::find_if(lamps.begin(), lamps.end(),
+                                   [&](const vpLampSight &sight) { return sight.id == fix.lamps[i]; });
+    const double sigma = std::max(lamp->positionSigma, m_tolerance) / depthOf(lamp->position, cMw);
+    const Eigen::Matrix2d doubt = lamp->covariance + sigma * sigma * Eigen::Matrix2d::Identity();
+    sum += fix.residuals[i].dot(doubt.inverse() * fix.residuals[i]);
+  }
+  return sum;
+}
+
+bool vpLampConsensus::agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const
+{
+  return fix.valid && chiSquareTail(misfit(fix, lamps), fix.degreesOfFreedom) > m_likelihood && sizesFit(fix);
 }
 
 //! Whether lamps whose size the map states look about that large from where the fix puts the camera.
@@ -106,9 +129,7 @@ bool vpLampConsensus::sizesFit(const vpVlpFix &fix) const
         std::find(fix.lamps.begin(), fix.lamps.end(), seen.id) == fix.lamps.end()) {
       continue;
     }
-    const Eigen::Vector3d &p = lamp->position;
-    const double depth = cMw[2][0] * p.x() + cMw[2][1] * p.y() + cMw[2][2] * p.z() + cMw[2][3];
-    const double expected = m_rig.camera.get_px() * lamp->size / depth;
+    const double expected = m_rig.camera.get_px() * lamp->size / depthOf(lamp->position, cMw);
     static const double coarse = 3; // px
     if (std::abs(seen.outline.diameter() - expected) > tolerance * expected + coarse) {
       return false;
@@ -124,41 +145,47 @@ vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &
     return refusal(usable.empty() ? "no lamp of the map seen"
                                   : "one lamp of the map seen, two are needed for a position");
   }
-  std::vector<size_t> members = usable;
-  vpVlpFix tolerant = solver(sights(members, m_tolerance));
-  while (tolerant.valid && !agree(tolerant) && members.size() > 3) {
-    // Without the one lamp that the others do best without.
-    std::vector<size_t> best;
-    vpVlpFix bestFix;
-    for (size_t left = 0; left < members.size(); ++left) {
-      std::vector<size_t> others = members;
-      others.erase(others.begin() + static_cast<long>(left));
-      const vpVlpFix fix = solver(sights(others, m_tolerance));
-      if (fix.valid && (!bestFix.valid || fix.chiSquare < bestFix.chiSquare)) {
-        best = others;
-        bestFix = fix;
-      }
+  std::vector<vpLampSight> lamps = sights(usable);
+  vpVlpFix fix = solver(lamps);
+  while (fix.valid && !agree(fix, lamps)) {
+    static const size_t mayLoseOne = 4; // with fewer, nobody could say which of them is wrong
+    if (lamps.size() < mayLoseOne) {
+      return refusal("lamps " + joined(fix.lamps) + " do not agree on one place");
     }
-    if (!bestFix.valid) {
-      break;
+    const vpVlpFix better = withoutWorst(lamps, solver);
+    if (!better.valid) {
+      return better;
     }
-    members = best;
-    tolerant = bestFix;
+    fix = better;
   }
-  if (!tolerant.valid) {
-    return tolerant;
-  }
-  if (!agree(tolerant)) {
-    return refusal("lamps " + joined(tolerant.lamps) + " do not agree on one place");
-  }
-  vpVlpFix fix = solver(sights(members, 0));
-  if (!fix.valid) {
-    return fix;
-  }
-  if (fix.degreesOfFreedom > 0) {
+  if (fix.valid && fix.degreesOfFreedom > 0) {
     fix.covariance *= std::max(1.0, fix.chiSquare / fix.degreesOfFreedom);
   }
   return fix;
+}
+
+//! Drops the lamp that the others agree best without.
+vpVlpFix vpLampConsensus::withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const
+{
+  std::vector<vpLampSight> kept = lamps;
+  vpVlpFix best = refusal("no lamps agree on one place");
+  double least = 0;
+  for (size_t left = 0; left < lamps.size(); ++left) {
+    std::vector<vpLampSight> others = lamps;
+    others.erase(others.begin() + static_cast<long>(left));
+    vpVlpFix fix = solver(others);
+    if (!fix.valid) {
+      continue;
+    }
+    const double chiSquare = misfit(fix, others);
+    if (!best.valid || chiSquare < least) {
+      best = fix;
+      least = chiSquare;
+      kept = others;
+    }
+  }
+  lamps = kept;
+  return best;
 }
 
 void vpLampConsensus::explain(const vpVlpFix &fix, const std::vector<size_t> &usable,
@@ -169,7 +196,9 @@ void vpLampConsensus::explain(const vpVlpFix &fix, const std::vector<size_t> &us
     const bool member = std::find(fix.lamps.begin(), fix.lamps.end(), lamp.id) != fix.lamps.end();
     lamp.accepted = fix.valid && member;
     if (!lamp.accepted) {
-      lamp.remark = fix.valid ? "not needed, or not where the other lamps expect it" : fix.refusal;
+      lamp.remark = !fix.valid             ? fix.refusal
+                    : fix.lamps.size() == 2 ? "not of the pair with the best geometry"
+                                            : "not where the other lamps expect it";
     }
   }
 }

@@ -6,6 +6,7 @@
 #define vpLampConsensus_h
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include <visp3/vlp_localization/vpVlpFix.h>
@@ -32,8 +33,7 @@ public:
 
   /*!
     The pose of all usable lamps where their residuals are likely under all stated doubts and `mapTolerance`. Otherwise
-    that of all but one, where leaving out that one alone makes the others agree and they can check each other;
-    otherwise a refusal. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up to what they
+    that of those that do agree, lamps left out one by one while there are more than three; otherwise a refusal. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up to what they
     show (Birge's ratio).
   */
   vpVlpFix solve(const std::vector<size_t> &usable, const Solve &solver) const;
@@ -43,8 +43,10 @@ public:
                       std::vector<vpLampObservation> &observations);
 
 private:
-  std::vector<vpLampSight> sights(const std::vector<size_t> &which, double leastPositionSigma) const;
-  bool agree(const vpVlpFix &fix) const;
+  std::vector<vpLampSight> sights(const std::vector<size_t> &which) const;
+  double misfit(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
+  bool agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
+  vpVlpFix withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const;
   bool sizesFit(const vpVlpFix &fix) const;
 
   const vpLampMap &m_map;

@@ -85,8 +85,8 @@ public:
   //! Exposure of one sensor line, s.
   double exposure() const { return m_exposure; }
 
-  //! Further averaging by an area resize: length of the box over neighbouring lines, s; 0 where there is
-  //! none.
+  //! Further averaging by an area resize over s sensor lines: length of a box of the same variance,
+  //! row time * sqrt(s^2 - 1), s; 0 where there is none.
   double averaging() const { return m_averaging; }
 
   /*!

@@ -1,0 +1,85 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "common/vpProgram.h"
+
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include <CLI/CLI.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! What goes wrong in OpenCV and FFmpeg comes back as an error with a line of our own.
+void silenceLibraries()
+{
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+#ifndef _WIN32
+  constexpr int keepWhatTheUserSet = 0;
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", keepWhatTheUserSet); // AV_LOG_QUIET
+#endif
+}
+
+int failed(const std::string &problem)
+{
+  spdlog::error(vpOneLine(problem));
+  return static_cast<int>(vpExitCode::badInput);
+}
+} // namespace
+
+int vpRunProgram(const std::string &name, const std::function<vpExitCode()> &run)
+{
+  spdlog::set_default_logger(spdlog::stderr_color_mt(name));
+  spdlog::set_pattern("%n: %^%l%$: %v");
+  silenceLibraries();
+  return vpExitStatus(run);
+}
+
+int vpExitStatus(const std::function<vpExitCode()> &run)
+{
+  try {
+    const vpExitCode code = run();
+    return std::cout.flush() ? static_cast<int>(code) : failed("stdout: cannot be written");
+  } catch (const vpException &error) {
+    return failed(error.getStringMessage());
+  } catch (const std::bad_alloc &) {
+    return failed("not enough memory");
+  } catch (const std::exception &error) {
+    return failed(std::string("unexpected: ") + error.what());
+  }
+}
+
+bool vpParseCommandLine(CLI::App &app, int argc, char **argv)
+{
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp &) {
+    std::cout << app.help();
+    return false;
+  } catch (const CLI::ParseError &error) {
+    throw vpException(vpException::badValue, vpOneLine(error.what()) + " (--help explains the options)");
+  }
+  return true;
+}
+
+std::string vpOneLine(const std::string &text)
+{
+  constexpr size_t piece = 80; // vpShown cuts what is longer
+  std::string line;
+  for (size_t i = 0; i < text.size(); i += piece) {
+    line += vpShown(text.substr(i, piece));
+  }
+  return line;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,355 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "common/vpVlpOverlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+
+#include <opencv2/imgproc.hpp>
+
+#include "common/vpPoseText.h"
+#include "common/vpTextBlock.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const cv::Scalar green(90, 230, 60), yellow(0, 225, 255), orange(100, 165, 225), white(240, 240, 240); // BGR
+constexpr int subPixel = 4;         // bits that OpenCV's drawing takes as the fraction of a coordinate
+constexpr size_t mostLabels = 40;   // more would hide the picture
+constexpr double farthest = 100000; // px; OpenCV's drawing overflows at a multiple of it
+
+/*!
+  Factor that makes a dark picture easy to look at. The 99.9 % quantile becomes white; where lamps are fewer
+  pixels than that, half the brightest pixel.
+*/
+double gain(const cv::Mat &grey)
+{
+  std::array<size_t, 256> histogram{};
+  for (int y = 0; y < grey.rows; ++y) {
+    for (int x = 0; x < grey.cols; ++x) {
+      ++histogram[grey.at<unsigned char>(y, x)];
+    }
+  }
+  const size_t above = grey.total() / 1000;
+  size_t count = 0;
+  int quantile = 256;
+  while (quantile > 0 && count <= above) {
+    count += histogram[static_cast<size_t>(--quantile)];
+  }
+  double most = 0;
+  cv::minMaxLoc(grey, nullptr, &most);
+  const double bright = std::max(static_cast<double>(quantile), most / 2);
+  return bright > 0 ? std::max(1.0, 255 / bright) : 1;
+}
+
+//! A part of the frame as it is shown.
+class View
+{
+public:
+  cv::Mat picture; // BGR
+  double unit;     // size of text and lines, 1 for a picture of 800 pixels
+  double scale;    // shown pixels of a frame's pixel
+
+  //! \e part of the frame, \e scale times as large; whole numbers enlarge without smoothing.
+  View(const cv::Mat &grey, const cv::Rect &part, double scale_, double brighter, double unit_)
+      : unit(unit_), scale(scale_), m_first(part.x, part.y)
+  {
+    const cv::Size size(std::max(1, cvRound(part.width * scale)), std::max(1, cvRound(part.height * scale)));
+    cv::Mat shown;
+    cv::resize(grey(part), shown, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_NEAREST);
+    shown.convertTo(shown, CV_8U, brighter);
+    cv::cvtColor(shown, picture, cv::COLOR_GRAY2BGR);
+  }
+
+  //! Where a pixel of the frame went; centres at integers, in the frame and here.
+  Eigen::Vector2d operator()(const Eigen::Vector2d &pixel) const
+  {
+    const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);
+    return scale * (pixel - m_first + half) - half;
+  }
+
+private:
+  Eigen::Vector2d m_first; // the frame's pixel in the upper left corner
+};
+
+double wholeScale(cv::Size frame)
+{
+  constexpr int least = 800, most = 1600; // px of the longer side
+  const int longest = std::max(frame.width, frame.height);
+  return longest > most ? static_cast<double>(most) / longest
+                        : (longest < least ? (least + longest - 1) / longest : 1);
+}
+
+template <typename... Values>
+std::string text(const char *format, Values... values)
+{
+  std::array<char, 200> buffer;
+  std::snprintf(buffer.data(), buffer.size(), format, values...);
+  return buffer.data();
+}
+
+//! To 1/steps; no -0.
+double rounded(double value, double steps)
+{
+  return std::round(value * steps) / steps + 0.0;
+}
+
+cv::Scalar colourOf(const vpLampObservation &lamp)
+{
+  return lamp.accepted ? green : (lamp.id.empty() ? orange : yellow);
+}
+
+void drawLines(View &view, const std::vector<Eigen::Vector2d> &points, bool closed, const cv::Scalar &colour,
+               int thickness)
+{
+  std::vector<cv::Point> fixed;
+  for (const Eigen::Vector2d &point : points) {
+    const Eigen::Vector2d at = view(point);
+    if (!at.allFinite() || at.cwiseAbs().maxCoeff() > farthest) {
+      return;
+    }
+    fixed.emplace_back(cvRound(at.x() * (1 << subPixel)), cvRound(at.y() * (1 << subPixel)));
+  }
+  cv::polylines(view.picture, fixed, closed, colour, thickness, cv::LINE_AA, subPixel);
+}
+
+std::vector<Eigen::Vector2d> pointsOf(const vpLampOutline &outline)
+{
+  if (outline.shape != vpLampOutline::Shape::ellipse) {
+    return {outline.corners.begin(), outline.corners.end()};
+  }
+  constexpr int count = 180;
+  const Eigen::Vector2d major(std::cos(outline.angle), std::sin(outline.angle)), minor(-major.y(), major.x());
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < count; ++i) {
+    const double t = 2 * M_PI * i / count;
+    points.push_back(outline.centre + std::cos(t) * outline.a * major + std::sin(t) * outline.b * minor);
+  }
+  return points;
+}
+
+void drawRegion(View &view, const vpLampObservation &lamp)
+{
+  const int thickness = std::max(1, cvRound(1.2 * view.unit));
+  drawLines(view, pointsOf(lamp.outline), true, colourOf(lamp), thickness);
+
+  const double arm = std::min(7 * view.unit / view.scale, 0.2 * lamp.outline.diameter());
+  const Eigen::Vector2d across(arm, 0), along(0, arm);
+  for (const bool edge : {true, false}) { // a dark edge: the cross lies on bright stripes
+    const cv::Scalar colour = edge ? cv::Scalar(0, 0, 0) : colourOf(lamp);
+    const int width = edge ? thickness + 2 : thickness;
+    drawLines(view, {lamp.point - across, lamp.point + across}, false, colour, width);
+    drawLines(view, {lamp.point - along, lamp.point + along}, false, colour, width);
+  }
+}
+
+std::vector<std::string> signalText(const vpStripeFeatures &features)
+{
+  if (features.signal == vpStripeFeatures::Signal::unmodulated) {
+    return {"unmodulated"};
+  }
+  if (features.signal == vpStripeFeatures::Signal::coded) { // frequency and duty say nothing of it
+    return {"coded"};
+  }
+  std::vector<std::string> lines = {text("%.1f +/- %.1f Hz", features.frequency, features.frequencySigma)};
+  if (std::isfinite(features.duty)) {
+    lines.push_back(text("duty %.3f +/- %.3f", features.duty, features.dutySigma));
+  }
+  return lines;
+}
+
+//! \e said: what stands in the picture's corner already.
+vpTextBlock labelOf(const vpLampObservation &lamp, const std::string &said, double unit)
+{
+  std::vector<std::string> lines = signalText(lamp.features);
+  if (!lamp.remark.empty() && lamp.remark.rfind(lines[0], 0) == 0) { // the remark says it, and more
+    lines.clear();
+  }
+  lines.push_back(text("confidence %.3f", lamp.confidence));
+  if (!lamp.remark.empty() && lamp.remark != said) {
+    lines.push_back(lamp.remark);
+  }
+  return vpTextBlock(lamp.id.empty() ? "?" : lamp.id.substr(0, 40), lines, colourOf(lamp), unit);
+}
+
+vpTextBlock poseBlock(const vpVlpFix &fix, double unit)
+{
+  constexpr size_t columns = 50;
+  if (!fix.valid) {
+    return vpTextBlock("no position", {fix.refusal}, yellow, unit, columns);
+  }
+  const auto sigma = [&fix](int i) { return std::sqrt(fix.covariance(i, i)); };
+  const double degree = M_PI / 180;
+  std::vector<std::string> lines;
+  for (unsigned int i = 0; i < 3; ++i) {
+    lines.push_back(text("%c  %.4f m +/- %.2f mm", "xyz"[i], rounded(fix.wMb[i][3], 1e4),
+                         1000 * sigma(static_cast<int>(i))));
+  }
+  lines.push_back(
+      text("yaw  %.3f +/- %.3f deg", rounded(vpRollPitchYaw(fix.wMb).z() / degree, 1e3), sigma(5) / degree));
+  if (fix.ambiguous) {
+    lines.push_back("ambiguous: a second pose fits as well");
+  }
+  return vpTextBlock("", lines, fix.ambiguous ? yellow : white, unit, columns);
+}
+
+//! Where an outline is in the view; empty where it is nowhere.
+cv::Rect boxOf(const View &view, const vpLampOutline &outline)
+{
+  const Eigen::Vector4d box = outline.box();
+  const Eigen::Vector2d first = view(box.head<2>()), last = view(box.tail<2>());
+  const bool drawn = first.allFinite() && last.allFinite() && first.cwiseAbs().maxCoeff() < farthest &&
+                     last.cwiseAbs().maxCoeff() < farthest;
+  return drawn ? cv::Rect(cv::Point(cvFloor(first.x()), cvFloor(first.y())),
+                          cv::Point(cvCeil(last.x()) + 1, cvCeil(last.y()) + 1))
+               : cv::Rect();
+}
+
+cv::Point2d middleOf(const cv::Rect &box)
+{
+  return 0.5 * cv::Point2d(box.tl() + box.br());
+}
+
+//! A small lamp once more, enlarged, so that its stripes and outline can be seen; empty where it is large
+//! enough.
+cv::Mat enlarged(const cv::Mat &grey, const View &view, double brighter, const vpLampObservation &lamp)
+{
+  const double least = 48 * view.unit, side = 88 * view.unit; // px
+  const cv::Rect box = boxOf(view, lamp.outline);
+  const Eigen::Vector4d outline = lamp.outline.box();
+  if (box.empty() || std::max(box.width, box.height) >= least) {
+    return {};
+  }
+  const double reach = 0.65 * (outline.tail<2>() - outline.head<2>()).maxCoeff() + 2;
+  const Eigen::Vector2d middle = 0.5 * (outline.head<2>() + outline.tail<2>());
+  const cv::Rect part = cv::Rect(cvFloor(middle.x() - reach), cvFloor(middle.y() - reach),
+                                 cvCeil(2 * reach) + 1, cvCeil(2 * reach) + 1) &
+                        cv::Rect(cv::Point(), grey.size());
+  if (part.empty()) {
+    return {};
+  }
+  View close(grey, part, side / std::max(part.width, part.height), brighter, view.unit);
+  drawRegion(close, lamp);
+  return close.picture;
+}
+
+//! A lamp's text, with its enlarged picture above.
+struct Label {
+  vpTextBlock block;
+  cv::Mat close; // may be empty
+  cv::Rect lamp;
+  cv::Rect place = {};
+
+  cv::Size size() const
+  {
+    return {std::max(block.size().width, close.cols), block.size().height + close.rows};
+  }
+};
+
+//! From the label to the lamp it speaks of.
+void drawLeader(cv::Mat &picture, const Label &label)
+{
+  const cv::Rect &from = label.place, &to = label.lamp;
+  const cv::Point middle(to.x + to.width / 2, to.y + to.height / 2);
+  const cv::Point start(std::clamp(middle.x, from.x, from.x + from.width),
+                        std::clamp(middle.y, from.y, from.y + from.height));
+  const cv::Point end(std::clamp(start.x, to.x, to.x + to.width),
+                      std::clamp(start.y, to.y, to.y + to.height));
+  cv::line(picture, start, end, label.block.colour(), 1, cv::LINE_AA);
+}
+
+void drawLabel(cv::Mat &picture, const Label &label)
+{
+  label.block.draw(picture, label.place.tl() + cv::Point(0, label.close.rows));
+  const cv::Rect close =
+      cv::Rect(label.place.tl(), label.close.size()) & cv::Rect(cv::Point(), picture.size());
+  if (!close.empty()) {
+    label.close(cv::Rect(cv::Point(), close.size())).copyTo(picture(close));
+  }
+  cv::rectangle(picture, label.place, 0.5 * label.block.colour(), 1);
+}
+
+/*!
+  A label for each lamp, most of them beside theirs. What counts for the position gets its place first, and of
+  those the outermost, which leave the room inside to the others.
+*/
+std::vector<Label> labelsOf(const vpVlpLocation &location, const cv::Mat &grey, const View &view,
+                            double brighter, vpTextLayout &layout)
+{
+  struct Turn {
+    int rank;
+    double outwards; // px from the middle of all, negative
+    const vpLampObservation *lamp;
+    cv::Rect box;
+  };
+  std::vector<Turn> turns;
+  cv::Point2d crowd;
+  for (const vpLampObservation &lamp : location.observations) {
+    turns.push_back({lamp.accepted ? 0 : (lamp.id.empty() ? 2 : 1), 0, &lamp, boxOf(view, lamp.outline)});
+    crowd += middleOf(turns.back().box) / static_cast<double>(location.observations.size());
+  }
+  for (Turn &turn : turns) {
+    turn.outwards = -cv::norm(middleOf(turn.box) - crowd);
+  }
+  std::stable_sort(turns.begin(), turns.end(), [](const Turn &one, const Turn &other) {
+    return std::tie(one.rank, one.outwards) < std::tie(other.rank, other.outwards);
+  });
+  turns.resize(std::min(turns.size(), mostLabels));
+
+  const int gap = cvRound(6 * view.unit);
+  std::vector<Label> labels;
+  for (const Turn &turn : turns) {
+    Label label = {labelOf(*turn.lamp, location.fix.refusal, view.unit),
+                   enlarged(grey, view, brighter, *turn.lamp), turn.box};
+    label.place = layout.beside(turn.box, label.size(), gap, crowd);
+    constexpr double crowded = 0.05;
+    if (!label.close.empty() && layout.covered(label.place) > crowded) { // text goes first
+      label.close = cv::Mat();
+      label.place = layout.beside(turn.box, label.size(), gap, crowd);
+    }
+    layout.avoid(label.place);
+    labels.push_back(label);
+  }
+  return labels;
+}
+} // namespace
+
+cv::Mat vpDrawVlpOverlay(const vpImage<unsigned char> &I, const vpVlpLocation &location)
+{
+  const cv::Mat grey(static_cast<int>(I.getRows()), static_cast<int>(I.getCols()), CV_8UC1, I.bitmap);
+  if (grey.empty()) {
+    return {};
+  }
+  const double scale = wholeScale(grey.size()), brighter = gain(grey);
+  View view(grey, cv::Rect(cv::Point(), grey.size()), scale, brighter,
+            scale * std::max(grey.cols, grey.rows) / 800);
+
+  vpTextLayout layout(view.picture.size());
+  for (const vpLampObservation &lamp : location.observations) {
+    layout.avoid(boxOf(view, lamp.outline));
+  }
+  const vpTextBlock pose = poseBlock(location.fix, view.unit);
+  const cv::Rect corner = layout.corner(pose.size(), cvRound(6 * view.unit));
+  layout.avoid(corner);
+  const std::vector<Label> labels = labelsOf(location, grey, view, brighter, layout);
+
+  for (const vpLampObservation &lamp : location.observations) {
+    drawRegion(view, lamp);
+  }
+  for (const Label &label : labels) {
+    drawLeader(view.picture, label);
+  }
+  for (const Label &label : labels) {
+    drawLabel(view.picture, label);
+  }
+  pose.draw(view.picture, corner.tl());
+  return view.picture;
+}
+
+END_VISP_NAMESPACE

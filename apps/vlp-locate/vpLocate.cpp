@@ -1,0 +1,148 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpLocate.h"
+
+#include <chrono>
+#include <thread>
+
+#include <unistd.h>
+
+#include <spdlog/spdlog.h>
+#include <visp3/core/vpException.h>
+
+#include "common/vpInterrupt.h"
+#include "common/vpProgressBar.h"
+#include "vpLocateOutputs.h"
+#include "vpLocateSummary.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+std::string sizeText(unsigned int width, unsigned int height)
+{
+  return std::to_string(width) + " x " + std::to_string(height) + " pixels";
+}
+
+//! The program's state, from its first frame to its exit code.
+class Locate
+{
+public:
+  explicit Locate(const vpLocateOptions &options)
+      : m_options(options), m_rig(vpVlpRig::load(options.rigFile)),
+        m_localizer(options.localizer(m_rig, vpLampMap::load(options.lampsFile))),
+        m_source(options.openFrames()), m_outputs(options, [this] { return windowClosed(); })
+  {
+  }
+
+  vpExitCode run()
+  {
+    vpInterrupt::install();
+    // Where the poses appear on the same terminal, they are the progress.
+    vpProgressBar progress(m_source->size(), !(m_options.posesToStdout() && isatty(STDOUT_FILENO) == 1));
+    bool ended = false;
+    for (vpLocatedFrame located; !vpInterrupt::requested() && !clicked(); ++located.index) {
+      try {
+        if (!m_source->next(located.frame)) {
+          ended = true;
+          break;
+        }
+        locate(located);
+      } catch (const vpException &error) {
+        progress.clear();
+        spdlog::error(vpOneLine(error.getStringMessage()));
+        m_summary.addBad();
+        continue;
+      }
+      m_summary.add(located);
+      m_outputs.write(located);
+      progress.show(located.index + 1);
+    }
+    progress.clear();
+    m_code = finish(ended ? "" : "stopped");
+    m_finished = true;
+    if (ended) {
+      waitForClick();
+    }
+    return m_code;
+  }
+
+private:
+  void locate(vpLocatedFrame &located)
+  {
+    const vpVlpFrame &frame = located.frame;
+    if (frame.I.getWidth() != m_rig.width || frame.I.getHeight() != m_rig.height) {
+      throw vpException(vpException::dimensionError,
+                        frame.name + ": " + sizeText(frame.I.getWidth(), frame.I.getHeight()) +
+                            ", expected " + sizeText(m_rig.width, m_rig.height) + ", the size of camera " +
+                            m_rig.cameraName + " in " + m_options.rigFile);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    try {
+      located.location = m_localizer.process(frame);
+    } catch (const vpException &error) { // knows no file
+      throw vpException(error.getCode(), frame.name + ": " + error.getStringMessage());
+    }
+    located.compute = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  //! Gives the outputs their names and says what was done. \e stopped: why before the last frame, or empty.
+  vpExitCode finish(const std::string &stopped)
+  {
+    const size_t frames = m_summary.used() + m_summary.bad();
+    if (m_summary.used() == 0 && stopped.empty()) { // nothing to write: the outputs stay away
+      if (frames != 1) {                            // of one, its own line says all
+        spdlog::error(vpOneLine(m_options.framesName()) +
+                      (frames == 0 ? ": no frames, expected one or more"
+                                   : ": none of the " + std::to_string(frames) + " frames could be used"));
+      }
+      return vpExitCode::badInput;
+    }
+    m_outputs.commit();
+    if (!stopped.empty()) {
+      const size_t total = m_source->size();
+      spdlog::warn("{} after {}{}; what was done so far is kept", stopped, total == 0 ? "frame " : "",
+                   std::to_string(frames) + (total == 0 ? "" : " of " + std::to_string(total) + " frames"));
+    }
+    m_summary.log();
+    return m_summary.positions() > 0 ? vpExitCode::done : vpExitCode::nothingFound;
+  }
+
+  bool clicked() { return m_outputs.window() != nullptr && m_outputs.window()->clicked(); }
+
+  //! The last picture stays until somebody has seen it.
+  void waitForClick()
+  {
+    if (m_outputs.window() != nullptr && m_summary.used() > 0) {
+      spdlog::info("click in the window to end");
+      while (!vpInterrupt::requested() && !clicked()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+    }
+  }
+
+  //! Called from within Xlib, through which no exception passes.
+  int windowClosed()
+  {
+    return vpExitStatus([this] { return m_finished ? m_code : finish("window closed"); });
+  }
+
+  vpLocateOptions m_options;
+  vpVlpRig m_rig;
+  vpVlpLocalizer m_localizer;
+  std::unique_ptr<vpFrameSource> m_source;
+  vpLocateSummary m_summary;
+  bool m_finished = false;
+  vpExitCode m_code = vpExitCode::badInput; // once finished
+  vpLocateOutputs m_outputs;                // last: its window speaks to all of the above
+};
+} // namespace
+
+vpExitCode vpLocate(const vpLocateOptions &options)
+{
+  return Locate(options).run();
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,207 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpLocateOptions.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_sensor/vpPictureSequence.h>
+#include <visp3/vlp_sensor/vpVideoSource.h>
+
+#include "common/vpProgram.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+namespace fs = std::filesystem;
+
+const char *const description =
+    "Locates a robot in each frame of a rolling-shutter camera that looks up at blinking ceiling lamps.\n";
+
+const char *const footer = R"(
+Examples:
+  vlp-locate --run recorded --poses poses.tum
+  vlp-locate --rig rig.yaml --lamps lamps.yaml --images 'frames/%04d.png' --fixes fixes.csv --overlay look
+  vlp-locate --rig rig.yaml --lamps lamps.yaml --image a.png b.jpg > poses.tum
+
+Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
+  poses    TUM: timestamp tx ty tz qx qy qz qw; a frame without a position, or with two that explain it
+           alike, has no row. Written to stdout where no output is asked for.
+  fixes    timestamp_s,x,y,z,roll,pitch,yaw,sigma_x,sigma_y,sigma_z,sigma_yaw,cov_xy,lamps,state,compute_s:
+           a row for each frame read. Angles about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).
+           lamps: their ids, joined by ';'. state: fix; ambiguous (a second pose explains the frame as
+           well, this one is the likelier); none (no position, the fields of the pose are empty).
+  seen     timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted:
+           a row for each lamp-like region. u, v: the image of the lamp's middle. lamp_id is empty where
+           it is no lamp of the map; accepted is 1 where it counts for the position.
+  overlay  a picture for each frame: outlines green where the lamp counts for the position, yellow where it
+           is known and does not, orange where it is no lamp of the map; the pose in a corner.
+Pictures without times (--images, --image) get their index, 0 1 2 ..., as their time.
+Files appear whole, at the end. Ctrl-C ends the work and keeps what was done so far.
+
+Exit code: 0 done; 2 bad usage or bad input; 3 no position in any frame.
+)";
+
+void addName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
+             const std::string &help)
+{
+  app.add_option(option, name, help)->type_name(type)->check([](const std::string &text) {
+    return std::string(text.empty() ? "an empty name" : "");
+  });
+}
+
+void addChoice(CLI::App &app, const std::string &option, std::string &value,
+               const std::vector<std::string> &choices, const std::string &help)
+{
+  std::string names;
+  for (const std::string &choice : choices) {
+    names += (names.empty() ? "" : "|") + choice;
+  }
+  app.add_option(option, value, help)->type_name(names)->check([choices, names](const std::string &text) {
+    const bool known = std::find(choices.begin(), choices.end(), text) != choices.end();
+    return known ? std::string() : vpOneLine(text) + ", expected " + names;
+  });
+}
+
+[[noreturn]] void fail(const std::string &problem)
+{
+  throw vpException(vpException::badValue, problem);
+}
+
+std::string absolute(const std::string &name)
+{
+  std::error_code ignored;
+  const fs::path path = fs::weakly_canonical(name, ignored);
+  return path.empty() ? name : path.string();
+}
+
+//! An output that would replace an input, or another output.
+void refuseClashes(const std::vector<std::pair<std::string, std::string>> &inputs,
+                   const std::vector<std::pair<std::string, std::string>> &outputs)
+{
+  std::vector<std::pair<std::string, std::string>> others = inputs;
+  for (const auto &[option, name] : outputs) {
+    std::error_code ignored;
+    const bool device =
+        fs::exists(name, ignored) && !fs::is_regular_file(name, ignored); // /dev/stdout twice is fine
+    for (const auto &[otherOption, otherName] : others) {
+      if (!name.empty() && !otherName.empty() && !device && absolute(name) == absolute(otherName)) {
+        fail(option + ": " + name + ", which is that of " + otherOption + ", expected another file");
+      }
+    }
+    others.emplace_back(option, name);
+  }
+}
+} // namespace
+
+bool vpLocateOptions::parse(int argc, char **argv)
+{
+  CLI::App app(description, "vlp-locate");
+  app.footer(footer);
+  app.get_formatter()->column_width(28);
+  std::string attitude = "mount", solver = "all";
+  addName(app, "--rig", rigFile, "FILE", "the camera on the robot; default with --run: DIR/rig.yaml");
+  addName(app, "--lamps", lampsFile, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
+  addName(app, "--run", run, "DIR", "frames of a recorded or simulated run: DIR/frames.csv");
+  addName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
+  app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
+  addName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
+  addChoice(
+      app, "--attitude", attitude, {"mount", "free"},
+      "mount (default): roll and pitch from the rig; free: all six estimated, from three lamps or more");
+  addChoice(app, "--solver", solver, {"all", "two"},
+            "all (default): all lamps seen; two: the pair of best geometry, as in the paper");
+  app.add_flag("--no-track", "detect every frame afresh (today always so)");
+  addName(app, "--poses", poses, "FILE", "write the poses as a TUM trajectory");
+  addName(app, "--fixes", fixes, "FILE", "write the poses with their doubt as CSV");
+  addName(app, "--seen", seen, "FILE", "write what was seen in each frame as CSV");
+  addName(app, "--overlay", overlay, "DIR", "write a picture of each frame with what was seen");
+  app.add_flag("--display", display, "show the same in a window; a click there ends the program");
+  if (!vpParseCommandLine(app, argc, argv)) {
+    return false;
+  }
+
+  freeAttitude = attitude == "free";
+  twoLamps = solver == "two";
+  if (!run.empty()) {
+    rigFile = rigFile.empty() ? (fs::path(run) / "rig.yaml").string() : rigFile;
+    lampsFile = lampsFile.empty() ? (fs::path(run) / "lamps.yaml").string() : lampsFile;
+  }
+  check();
+  return true;
+}
+
+void vpLocateOptions::check() const
+{
+  const int sources =
+      (run.empty() ? 0 : 1) + (pattern.empty() ? 0 : 1) + (files.empty() ? 0 : 1) + (video.empty() ? 0 : 1);
+  if (sources != 1) {
+    fail("frames: " + std::string(sources == 0 ? "none" : "more than one source") +
+         ", expected one of --run, --images, --image and --video (--help explains the options)");
+  }
+  if (rigFile.empty()) {
+    fail("--rig: nothing, expected the file of the camera on the robot");
+  }
+  if (lampsFile.empty()) {
+    fail("--lamps: nothing, expected the file of the lamp map");
+  }
+  if (freeAttitude && twoLamps) {
+    fail("--attitude: free with --solver two, expected mount: two lamps do not tell roll and pitch");
+  }
+  const std::string frames = run.empty() ? std::string() : (fs::path(run) / "frames.csv").string();
+  std::vector<std::pair<std::string, std::string>> inputs = {
+      {"--rig", rigFile}, {"--lamps", lampsFile}, {"--run", frames}, {"--video", video}};
+  for (const std::string &file : files) {
+    inputs.emplace_back("--image", file);
+  }
+  refuseClashes(inputs, {{"--poses", poses}, {"--fixes", fixes}, {"--seen", seen}});
+}
+
+std::unique_ptr<vpFrameSource> vpLocateOptions::openFrames() const
+{
+  if (!run.empty()) {
+    return std::make_unique<vpPictureSequence>(vpPictureSequence::fromRun(run));
+  }
+  if (!pattern.empty()) {
+    return std::make_unique<vpPictureSequence>(vpPictureSequence::fromPattern(pattern));
+  }
+  if (!files.empty()) {
+    return std::make_unique<vpPictureSequence>(files);
+  }
+  return std::make_unique<vpVideoSource>(video);
+}
+
+std::string vpLocateOptions::framesName() const
+{
+  for (const std::string &name : {run, pattern, video}) {
+    if (!name.empty()) {
+      return name;
+    }
+  }
+  return files.front();
+}
+
+vpVlpLocalizer vpLocateOptions::localizer(const vpVlpRig &rig, const vpLampMap &map) const
+{
+  // Without a position there can still be lamps to look at.
+  const bool positionsOnly = seen.empty() && overlay.empty() && !display;
+  const size_t needed = freeAttitude ? 3 : 2, lamps = map.lamps.size();
+  if (positionsOnly && lamps < needed) {
+    fail(lampsFile + ": " + std::to_string(lamps) + (lamps == 1 ? " lamp" : " lamps") + ", expected " +
+         std::to_string(needed) + " or more for a position");
+  }
+  vpVlpLocalizer localizer(rig, map);
+  localizer.solver = twoLamps ? vpVlpLocalizer::Solver::two : vpVlpLocalizer::Solver::all;
+  localizer.manyLamps.attitude =
+      freeAttitude ? vpManyLampSolver::Attitude::free : vpManyLampSolver::Attitude::mount;
+  return localizer;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,59 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLocateOutputs_h
+#define vpLocateOutputs_h
+
+#include <memory>
+
+#include <visp3/vlp_core/vpAtomicFile.h>
+
+#include "common/vpVlpWindow.h"
+#include "vpLocateOptions.h"
+
+BEGIN_VISP_NAMESPACE
+
+//! A frame and what became of it.
+struct vpLocatedFrame {
+  size_t index = 0; // 0 is the first of the source, whether it could be read or not
+  vpVlpFrame frame;
+  vpVlpLocation location;
+  double compute = 0; // s, from frame to pose, without reading and writing
+};
+
+//! The files, folder and window that were asked for.
+class vpLocateOutputs
+{
+public:
+  /*!
+    \param closed As of vpVlpWindow. \throw vpException where one of them cannot be written: before any work
+    is done.
+  */
+  vpLocateOutputs(const vpLocateOptions &options, std::function<int()> closed);
+
+  void write(const vpLocatedFrame &located);
+
+  //! Gives the files their names.
+  void commit();
+
+  //! The window, or nullptr.
+  vpVlpWindow *window() { return m_window.get(); }
+
+private:
+  std::ostream *poses();
+  void writeFix(const vpLocatedFrame &located);
+  void writeSeen(const vpLocatedFrame &located);
+  void draw(const vpLocatedFrame &located);
+
+  bool m_posesToStdout;
+  std::string m_overlay; // folder, or empty
+  std::unique_ptr<vpAtomicFile> m_poses;
+  std::unique_ptr<vpAtomicFile> m_fixes;
+  std::unique_ptr<vpAtomicFile> m_seen;
+  std::unique_ptr<vpVlpWindow> m_window;
+};
+
+END_VISP_NAMESPACE
+
+#endif

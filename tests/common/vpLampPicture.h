@@ -1,0 +1,199 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLampPicture_h
+#define vpLampPicture_h
+
+/*!
+  \file vpLampPicture.h
+  Pictures of blinking lamps by brute force, without any formula of the library: areas by counting points,
+  light by the overlap of pulses and exposure.
+*/
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/imgproc.hpp>
+#include <visp3/core/vpImage.h>
+#include <visp3/vlp_core/vpVlpNamespace.h>
+
+BEGIN_VISP_NAMESPACE
+
+//! A lamp in the picture. Pixels, centres at integers, u to the right and v down.
+struct vpPaintedLamp {
+  struct Pulse {
+    double start, length; // periods
+  };
+
+  Eigen::Vector2d centre = {0, 0};      // px, of the ellipse
+  double a = 10, b = 10;                // px, semi-axes
+  double angle = 0;                     // rad, from u to a, towards v
+  std::vector<Eigen::Vector2d> corners; // px, four in order around it: a convex quadrilateral instead
+  double amplitude = 150;               // grey levels above the background while lit
+  double frequency = 0;                 // Hz, of repetition
+  double phase = 0;                     // periods, at time 0
+  std::vector<Pulse> pulses = {{0, 1}}; // lit stretches of each period; default: always lit
+
+  void pwm(double duty) { pulses = {{0, duty}}; }
+  void twoPulse(double duty, double difference) { pulses = {{0, 0.5 * duty}, {difference, 0.5 * duty}}; }
+  //! '1' lit, '0' dark, all of them one period.
+  void chips(const std::string &word)
+  {
+    pulses.clear();
+    for (size_t k = 0; k < word.size(); ++k)
+      if (word[k] == '1')
+        pulses.push_back({static_cast<double>(k) / word.size(), 1.0 / word.size()});
+  }
+  //! About the centre and turned by the angle.
+  void rectangle(double width, double height)
+  {
+    const Eigen::Vector2d x(std::cos(angle), std::sin(angle)), y(-x.y(), x.x());
+    const Eigen::Vector2d w = 0.5 * width * x, h = 0.5 * height * y;
+    corners = {centre - w - h, centre + w - h, centre + w + h, centre - w + h};
+  }
+
+  bool inside(const Eigen::Vector2d &point) const
+  {
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const Eigen::Vector2d side = corners[(i + 1) % corners.size()] - corners[i], to = point - corners[i];
+      if (side.x() * to.y() - side.y() * to.x() < 0)
+        return false;
+    }
+    const double c = std::cos(angle), s = std::sin(angle);
+    const Eigen::Vector2d d = point - centre;
+    return !corners.empty() || std::hypot((c * d.x() + s * d.y()) / a, (-s * d.x() + c * d.y()) / b) < 1;
+  }
+
+  bool hasTipNear(const Eigen::Vector2d &point) const
+  {
+    return std::any_of(corners.begin(), corners.end(), [&](auto &tip) { return (tip - point).norm() < 1; });
+  }
+
+  //! Share of a square that it covers: points of it counted. They form a Fibonacci lattice, of which no two
+  //! share a u or a v, so that upright edges are met as finely as others.
+  double covers(const Eigen::Vector2d &upperLeft, double side) const
+  {
+    static const int points = 89, step = 55;
+    int in = 0;
+    for (int k = 0; k < points; ++k)
+      in += inside(upperLeft + side / points * Eigen::Vector2d(k + 0.5, k * step % points + 0.5));
+    return static_cast<double>(in) / points;
+  }
+
+  //! Farthest that it reaches from its centre, px.
+  double reach() const
+  {
+    double farthest = corners.empty() ? std::max(a, b) : 0;
+    for (const Eigen::Vector2d &corner : corners)
+      farthest = std::max(farthest, (corner - centre).norm());
+    return farthest;
+  }
+
+  //! Share of the time from \e t on, \e exposure long (s), during which it is lit.
+  double light(double t, double exposure) const
+  {
+    if (frequency <= 0)
+      return 1;
+    // Lit periods since a pulse's start: whole ones and the begun one.
+    auto lit = [](double x, double length) {
+      return std::floor(x) * length + std::min(x - std::floor(x), length);
+    };
+    const double from = t * frequency + phase, to = from + exposure * frequency;
+    double sum = 0;
+    for (const Pulse &pulse : pulses)
+      sum += lit(to - pulse.start, pulse.length) - lit(from - pulse.start, pulse.length);
+    return sum / (to - from);
+  }
+};
+
+//! A camera looking at lamps; the line read first starts its exposure at time 0.
+struct vpLampPicture {
+  int width = 640, height = 480; // px
+  std::vector<vpPaintedLamp> lamps;
+  double rowTime = 43.1e-6, exposure = 43.1e-6; // s
+  bool columns = false;                         // the readout runs along columns
+  bool reversed = false;                        // the last line first
+  double blur = 0;                              // px, standard deviation of the optical blur
+  double background = 10;                       // grey value
+  double noise = 2;                             // grey levels, standard deviation
+  unsigned int seed = 1;                        // of the noise
+
+  //! Start of the exposure of a line, s.
+  double start(int line) const { return rowTime * (reversed ? (columns ? width : height) - 1 - line : line); }
+
+  //! Share of each pixel that the lamp covers, blur included; no blinking.
+  cv::Mat_<float> coverage(const vpPaintedLamp &lamp) const
+  {
+    static const int cells = 4; // of a pixel, along each side
+    const int spread = static_cast<int>(std::ceil(5 * blur));
+    const int reach = static_cast<int>(std::ceil(lamp.reach())) + spread + 2;
+    const int u = cvRound(lamp.centre.x()), v = cvRound(lamp.centre.y());
+    const cv::Rect frame(0, 0, width, height);
+    const cv::Rect box = cv::Rect(u - reach, v - reach, 2 * reach + 1, 2 * reach + 1) &
+                         cv::Rect(-spread, -spread, width + 2 * spread, height + 2 * spread);
+    cv::Mat_<float> whole(height, width, 0.f);
+    if ((box & frame).empty())
+      return whole;
+    cv::Mat_<float> mask(box.height * cells, box.width * cells, 0.f);
+    cv::Mat_<int> inside(mask.rows + 1, mask.cols + 1); // of the cells' corners, 0 or 1
+    auto corner = [&](int y, int x) {
+      return Eigen::Vector2d(box.x - 0.5 + double(x) / cells, box.y - 0.5 + double(y) / cells);
+    };
+    for (int y = 0; y < inside.rows; ++y)
+      for (int x = 0; x < inside.cols; ++x)
+        inside(y, x) = lamp.inside(corner(y, x));
+    for (int y = 0; y < mask.rows; ++y)
+      for (int x = 0; x < mask.cols; ++x) {
+        // Lamps are convex: with all corners the whole cell is inside. Without any only a tip may be.
+        const int in = inside(y, x) + inside(y, x + 1) + inside(y + 1, x) + inside(y + 1, x + 1);
+        if (in == 4)
+          mask(y, x) = 1;
+        else if (in > 0 || lamp.hasTipNear(corner(y, x)))
+          mask(y, x) = static_cast<float>(lamp.covers(corner(y, x), 1.0 / cells));
+      }
+    if (blur > 0) {
+      const int size = 2 * spread * cells + 1;
+      cv::GaussianBlur(mask, mask, cv::Size(size, size), cells * blur, cells * blur, cv::BORDER_CONSTANT);
+    }
+    cv::resize(mask, mask, box.size(), 0, 0, cv::INTER_AREA); // the mean of each pixel's cells
+    mask((box & frame) - box.tl()).copyTo(whole(box & frame));
+    return whole;
+  }
+
+  //! Grey values before noise, rounding and clipping.
+  cv::Mat_<float> exact() const
+  {
+    cv::Mat_<float> grey(height, width, static_cast<float>(background));
+    for (const vpPaintedLamp &lamp : lamps) {
+      const cv::Mat_<float> share = coverage(lamp);
+      for (int line = 0; line < (columns ? width : height); ++line) {
+        const double light = lamp.amplitude * lamp.light(start(line), exposure);
+        cv::Mat_<float> target = columns ? grey.col(line) : grey.row(line);
+        target += light * (columns ? share.col(line) : share.row(line));
+      }
+    }
+    return grey;
+  }
+
+  vpImage<unsigned char> render() const
+  {
+    const cv::Mat_<float> grey = exact();
+    std::mt19937 generator(seed);
+    std::normal_distribution<double> normal;
+    vpImage<unsigned char> I(static_cast<unsigned int>(height), static_cast<unsigned int>(width));
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        I[y][x] = cv::saturate_cast<unsigned char>(cvRound(grey(y, x) + noise * normal(generator)));
+    return I;
+  }
+};
+
+END_VISP_NAMESPACE
+
+#endif
