@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -39,72 +40,172 @@ std::vector<cv::Point2f> onHull(const std::vector<cv::Point2f> &points, const st
   return outer;
 }
 
-//! Lit length over the length of the convex hull, summed over the lit lines: 1 for a convex region.
-double solidity(const vpLedRoi &roi, const std::vector<cv::Point2f> &hull)
+//! How far samples outside and inside an end tell its edge: past a little blur.
+int reachOf(const vpLedRoi &roi)
 {
-  // Left and right end of the hull on each line of the box, side by side.
-  std::vector<double> first(roi.box.height, 1e9);
-  std::vector<double> last(roi.box.height, -1e9);
-  for (size_t i = 0; i < hull.size(); ++i) {
-    cv::Point2f top = hull[i];
-    cv::Point2f bottom = hull[(i + 1) % hull.size()];
-    if (top.y > bottom.y) {
-      std::swap(top, bottom);
+  return 2 + roi.box.width / 50;
+}
+
+/*!
+  Which lines are lit about as brightly as the brightest near them. Others are lit for a part of their
+  exposure: an edge that is not quite sharp sinks below the level nearer to the middle there.
+*/
+std::vector<bool> fullyLit(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark)
+{
+  static const double full = 0.7;
+  const int near = 2 + roi.box.height / 8; // lines
+  std::vector<double> light;
+  light.reserve(roi.chords.size());
+  for (const vpLedChord &chord : roi.chords) {
+    const int step = 1 + (chord.last - chord.first) / 32;
+    double sum = 0;
+    int count = 0;
+    for (int x = chord.first; x <= chord.last; x += step) {
+      sum += lines(chord.line, x);
+      ++count;
     }
-    for (int y = cvRound(top.y); y <= cvRound(bottom.y); ++y) {
-      const double share = bottom.y > top.y ? (y - top.y) / (bottom.y - top.y) : 0;
-      const double x = top.x + share * (bottom.x - top.x);
-      first[y - roi.box.y] = std::min({first[y - roi.box.y], x, bottom.y > top.y ? x : bottom.x});
-      last[y - roi.box.y] = std::max({last[y - roi.box.y], x, bottom.y > top.y ? x : bottom.x});
+    light.push_back(sum / count - dark);
+  }
+  std::vector<bool> lit(light.size());
+  for (size_t i = 0; i < light.size(); ++i) {
+    double brightest = light[i];
+    for (size_t j = i; j-- > 0 && roi.chords[i].line - roi.chords[j].line <= near;) {
+      brightest = std::max(brightest, light[j]);
+    }
+    for (size_t j = i + 1; j < light.size() && roi.chords[j].line - roi.chords[i].line <= near; ++j) {
+      brightest = std::max(brightest, light[j]);
+    }
+    lit[i] = light[i] >= full * brightest;
+  }
+  return lit;
+}
+
+//! Left and right end of a polygon on each line of the box.
+struct Extent {
+  std::vector<float> first;
+  std::vector<float> last;
+
+  Extent(const std::vector<cv::Point2f> &polygon, const cv::Rect &box)
+      : first(box.height, 1e9f), last(box.height, -1e9f)
+  {
+    for (size_t i = 0; i < polygon.size(); ++i) {
+      cv::Point2f top = polygon[i];
+      cv::Point2f bottom = polygon[(i + 1) % polygon.size()];
+      if (top.y > bottom.y) {
+        std::swap(top, bottom);
+      }
+      for (int y = cvRound(top.y); y <= cvRound(bottom.y); ++y) {
+        const float share = bottom.y > top.y ? (y - top.y) / (bottom.y - top.y) : 0;
+        const float x = top.x + share * (bottom.x - top.x);
+        first[y - box.y] = std::min({first[y - box.y], x, bottom.y > top.y ? x : bottom.x});
+        last[y - box.y] = std::max({last[y - box.y], x, bottom.y > top.y ? x : bottom.x});
+      }
     }
   }
+};
+
+//! Lit length over the length of the convex hull, summed over the lit lines: 1 for a convex region.
+double solidity(const std::vector<vpLedChord> &chords, const Extent &hull, int firstLine)
+{
   double lit = 0;
   double convex = 0;
-  for (const vpLedChord &chord : roi.chords) {
+  for (const vpLedChord &chord : chords) {
     lit += chord.last - chord.first + 1;
-    convex += std::max(last[chord.line - roi.box.y] - first[chord.line - roi.box.y], 1.0);
+    convex += std::max(hull.last[chord.line - firstLine] - hull.first[chord.line - firstLine], 1.0f);
   }
   return std::min(1.0, lit / convex);
 }
 
-//! Mean share of a line's light, just inside its chord, that is gone just outside: 1 for a sharp edge, 0 for
-//! a glow.
-double sharpness(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark)
+//! How far each chord ends inside the hull, on its worse side, in units of \e tolerance.
+std::vector<float> shortfalls(const std::vector<vpLedChord> &chords, const Extent &hull, int firstLine,
+                              double tolerance)
 {
-  const int reach = 2 + roi.box.width / 50;
-  double drop = 0;
-  double inside = 0;
-  for (const vpLedChord &chord : roi.chords) {
-    const unsigned char *row = lines[chord.line];
-    for (int side = -1; side <= 1; side += 2) {
-      const int end = side < 0 ? chord.first : chord.last;
-      const int in = end - side * reach;
-      const int out = end + side * reach;
-      if (out < 0 || out >= lines.cols || in < chord.first || in > chord.last) {
-        continue;
-      }
-      drop += row[in] - row[out];
-      inside += row[in] - dark;
+  std::vector<float> shortfall;
+  shortfall.reserve(chords.size());
+  for (const vpLedChord &chord : chords) {
+    const int y = chord.line - firstLine;
+    const double worse = std::max(chord.first - 0.5 - hull.first[y], hull.last[y] - chord.last - 0.5);
+    shortfall.push_back(static_cast<float>(worse / tolerance));
+  }
+  return shortfall;
+}
+
+//! Mean square of the shortfalls of the lines that are fully lit.
+double hollowness(const std::vector<float> &shortfall, const std::vector<bool> &lit)
+{
+  static const double worst = 4; // what is missing there is no longer a matter of degree
+  double sum = 0;
+  for (size_t i = 0; i < shortfall.size(); ++i) {
+    if (lit[i]) {
+      sum += std::min(worst * worst, static_cast<double>(shortfall[i]) * shortfall[i]);
     }
   }
-  return inside > 0 ? std::clamp(drop / inside, 0.0, 1.0) : 0;
+  return sum / shortfall.size();
+}
+
+//! Of the sides: 1 for a lamp no flatter than most; a side that the border cuts may be of any length.
+double roundness(const vpLedRoi &roi)
+{
+  const bool flat = roi.box.height < roi.box.width;
+  if (flat ? roi.cutAlong : roi.cutAcross) {
+    return 1;
+  }
+  return std::min(1.0,
+                  1.6 * std::min(roi.box.width, roi.box.height) / std::max(roi.box.width, roi.box.height));
+}
+
+std::vector<cv::Point2f> endsOf(const std::vector<vpLedChord> &chords, int first, int last)
+{
+  std::vector<cv::Point2f> points;
+  points.reserve(2 * chords.size());
+  for (const vpLedChord &chord : chords) {
+    if (chord.first > first) {
+      points.emplace_back(chord.first - 0.5f, static_cast<float>(chord.line));
+    }
+    if (chord.last < last) {
+      points.emplace_back(chord.last + 0.5f, static_cast<float>(chord.line));
+    }
+  }
+  return points;
+}
+
+//! The longest dark gap between the chords, lines.
+int longestGap(const vpLedRoi &roi)
+{
+  int gap = 0;
+  for (size_t i = 1; i < roi.chords.size(); ++i) {
+    gap = std::max(gap, roi.chords[i].line - roi.chords[i - 1].line - 1);
+  }
+  return gap;
+}
+
+//! First and last line of the ellipse through the ends of the chords; of the region, where none fits.
+std::pair<double, double> ellipseLines(const std::vector<cv::Point2f> &points, const cv::Rect &box)
+{
+  const cv::RotatedRect e = cv::fitEllipseDirect(points);
+  const double c = std::cos(e.angle * CV_PI / 180);
+  const double s = std::sin(e.angle * CV_PI / 180);
+  const double half = 0.5 * std::hypot(s * e.size.width, c * e.size.height);
+  return {std::min<double>(box.y, e.center.y - half), std::max<double>(box.br().y - 1, e.center.y + half)};
+}
+
+/*!
+  How many more lines the chords may last beyond the first one in \e widths, if the shape is convex: they
+  close at least as fast as they have from a quarter of the lit lines further in.
+*/
+double linesToClose(const std::vector<cv::Point2d> &widths)
+{
+  const cv::Point2d &end = widths.front();
+  const cv::Point2d &inner = widths[widths.size() / 4];
+  const double closing = (inner.x - end.x) / std::max(1.0, std::abs(inner.y - end.y));
+  return closing > 0 ? end.x / closing : noFit;
 }
 
 } // namespace
 
 std::vector<cv::Point2f> vpChordShape::ends(const vpLedRoi &roi, int samples)
 {
-  std::vector<cv::Point2f> points;
-  points.reserve(2 * roi.chords.size());
-  for (const vpLedChord &chord : roi.chords) {
-    if (chord.first > 0) {
-      points.emplace_back(chord.first - 0.5f, static_cast<float>(chord.line));
-    }
-    if (chord.last < samples - 1) {
-      points.emplace_back(chord.last + 0.5f, static_cast<float>(chord.line));
-    }
-  }
-  return points;
+  return endsOf(roi.chords, 0, samples - 1);
 }
 
 std::vector<cv::Point2f> vpChordShape::outerEnds(const vpLedRoi &roi, int samples)
@@ -160,34 +261,122 @@ double vpChordShape::rectangleMisfit(const std::vector<cv::Point2f> &points)
   return std::sqrt(sum / points.size());
 }
 
-double vpChordShape::lampness(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark)
+vpChordShape::Score vpChordShape::score(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines,
+                                        double dark)
 {
+  Score score;
+  score.shortfall.assign(roi.chords.size(), 0);
+  score.edge = edge(roi, lines, dark);
   if (roi.box.width < 4 || roi.box.height < 3) {
-    return 0;
+    return score;
   }
-  const size_t lit = roi.chords.size();
-  const std::vector<cv::Point2f> points = ends(roi, lines.cols);
-  if (5 * points.size() <= lit) {
-    static const double fillsPicture = 0.5; // from border to border: no outline to judge by
-    return fillsPicture;
+  const std::vector<vpLedChord> &chords = roi.chords;
+  const std::vector<cv::Point2f> points = endsOf(chords, 0, lines.cols - 1);
+  if (5 * points.size() <= chords.size()) {
+    score.lampness = 0.5; // from border to border: no outline to judge by
+    return score;
   }
   std::vector<cv::Point2f> hull;
-  cv::convexHull(points, hull);
+  cv::convexHull(endsOf(chords, -1, lines.cols), hull); // that of a lamp cut by the border is convex as well
   if (points.size() < 6 || hull.size() < 3) {
-    return 0;
-  }
-  const double convex = std::clamp((solidity(roi, hull) - 0.4) / 0.5, 0.0, 1.0);
-  if (convex <= 0) {
-    return 0;
+    return score;
   }
   const double size = std::max(roi.box.width, roi.box.height);
+  const Extent extent(hull, roi.box);
+  score.shortfall = shortfalls(chords, extent, roi.box.y, 1 + 0.03 * size);
+  const double hollow = hollowness(score.shortfall, fullyLit(roi, lines, dark));
+  const double convex = std::clamp((solidity(chords, extent, roi.box.y) - 0.4) / 0.5, 0.0, 1.0);
+  if (convex <= 0) {
+    return score;
+  }
   const std::vector<cv::Point2f> outer = onHull(points, hull, 0.7 + 0.01 * size);
   const double tolerance = 0.6 + 0.02 * size;
   const double misfit = std::min(ellipseMisfit(outer, roi.box), rectangleMisfit(outer)) / tolerance;
-  const double aspect = std::min(1.0, 1.6 * std::min(roi.box.width, roi.box.height) / size);
   const double evidence = 1 - 4.0 / (4.0 + outer.size());
-  return std::exp(-0.5 * misfit * misfit) * convex * aspect * evidence *
-         (0.4 + 0.6 * sharpness(roi, lines, dark));
+  score.lampness = std::exp(-0.5 * (misfit * misfit + hollow)) * convex * roundness(roi) * evidence *
+                   (0.4 + 0.6 * score.edge.sharpness());
+  return score;
+}
+
+bool vpChordShape::mayGoOn(const vpLedRoi &roi, const cv::Size &picture)
+{
+  const int before = roi.box.y;
+  const int after = picture.height - roi.box.br().y;
+  int gap = longestGap(roi);
+  if (gap == 0) {
+    // A single stripe: of a lamp that shines all the time, or, where it is flat, of one whose dark gap may be
+    // as long as itself.
+    gap = 2 * roi.box.height < roi.box.width ? roi.box.height : 0;
+  }
+  static const int more = 1; // lines, half lit at either end of a gap
+  if (gap == 0 || std::min(before, after) > gap + more) {
+    return false;
+  }
+  const std::vector<cv::Point2f> outer = outerEnds(roi, picture.width);
+  const double tolerance = 0.6 + 0.02 * std::max(roi.box.width, roi.box.height);
+  cv::Rect longer = roi.box; // the part within the picture may be the smaller one
+  longer.height *= 3;
+  const bool ellipse = ellipseMisfit(outer, longer) < tolerance;
+  std::pair<double, double> lines(-1, picture.height);
+  if (ellipse) {
+    lines = ellipseLines(outer, roi.box);
+  }
+  std::vector<cv::Point2d> widths; // and lines
+  for (const vpLedChord &chord : roi.chords) {
+    widths.emplace_back(chord.last - chord.first + 1, chord.line);
+  }
+  const bool first = before <= gap + more && lines.first < 0 && linesToClose(widths) > before;
+  std::reverse(widths.begin(), widths.end());
+  const bool last = after <= gap + more && lines.second > picture.height - 1 && linesToClose(widths) > after;
+  return first || last;
+}
+
+vpChordShape::Edge vpChordShape::edge(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark)
+{
+  Edge edge;
+  const int reach = reachOf(roi);
+  std::array<int, 256> differences{}; // of neighbours, along the lines
+  int pairs = 0;
+  int count = 0;
+  double light = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    const unsigned char *row = lines[chord.line];
+    const int step = 1 + (chord.last - chord.first) / 32;
+    for (int x = chord.first; x < chord.last; x += step) {
+      light += row[x];
+      ++differences[std::abs(row[x + 1] - row[x])];
+      ++pairs;
+    }
+    for (int side = -1; side <= 1; side += 2) {
+      const int end = side < 0 ? chord.first : chord.last;
+      const int in = end - side * reach;
+      const int out = end + side * reach;
+      if (out < 0 || out >= lines.cols || in < chord.first || in > chord.last) {
+        continue;
+      }
+      edge.step += row[in] - row[out];
+      edge.inside += row[in] - dark;
+      ++count;
+    }
+  }
+  edge.ends = count;
+  edge.light = pairs > 0 ? light / pairs - dark : 0;
+  if (count > 0) {
+    edge.step /= count;
+    edge.inside /= count;
+  }
+  // The median of |difference| of two Gaussian pixels is 0.954 sigma; it comes in whole grey levels, so
+  // interpolate.
+  int sum = 0;
+  for (size_t d = 0; d < differences.size() && pairs > 0; ++d) {
+    if (2 * (sum + differences[d]) > pairs) {
+      const double within = (0.5 * pairs - sum) / differences[d];
+      edge.noise = std::max(0.0, (d - 0.5 + within) / 0.954);
+      break;
+    }
+    sum += differences[d];
+  }
+  return edge;
 }
 
 END_VISP_NAMESPACE

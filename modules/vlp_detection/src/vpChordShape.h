@@ -5,6 +5,7 @@
 #ifndef vpChordShape_h
 #define vpChordShape_h
 
+#include <algorithm>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -31,8 +32,33 @@ std::vector<cv::Point2f> outerEnds(const vpLedRoi &roi, int samples);
 double ellipseMisfit(const std::vector<cv::Point2f> &points, const cv::Rect &box);
 double rectangleMisfit(const std::vector<cv::Point2f> &points);
 
-//! 0 to 1: how much the chords look like one whole lamp on a background of grey value \e dark.
-double lampness(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark);
+//! How the light falls off at the ends of the chords, grey levels.
+struct Edge {
+  double step = 0;   // mean fall, from just inside to just outside
+  double inside = 0; // mean light just inside, above the background
+  double light = 0;  // mean light of the chords, above the background
+  double noise = 0;  // standard deviation inside
+  int ends = 0;      // of chords, that there are
+
+  double sharpness() const { return inside > 0 ? std::clamp(step / inside, 0.0, 1.0) : 0; }
+};
+
+//! How much the chords look like one whole lamp.
+struct Score {
+  Edge edge;
+  double lampness = 0;          // 0 to 1
+  std::vector<float> shortfall; // of each chord: how far it ends inside the convex hull, in tolerances
+};
+
+Score score(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark);
+
+Edge edge(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark);
+
+/*!
+  Whether the lamp may go on beyond the first or last line of the picture, though the region ends before it:
+  by a dark gap no longer than the lamp shows elsewhere, and the chords there do not close.
+*/
+bool mayGoOn(const vpLedRoi &roi, const cv::Size &picture);
 
 } // namespace vpChordShape
 

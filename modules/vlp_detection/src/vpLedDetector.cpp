@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -26,6 +27,30 @@ vpLampOutline swapped(vpLampOutline outline)
   }
   std::swap(outline.centreCovariance(0, 0), outline.centreCovariance(1, 1));
   return outline;
+}
+
+//! Both regions as one: on each line from the first to the last lit sample.
+vpLedRoi joined(const vpLedRoi &a, const vpLedRoi &b)
+{
+  std::map<int, vpLedChord> chords;
+  for (const vpLedRoi *roi : {&a, &b}) {
+    for (const vpLedChord &chord : roi->chords) {
+      vpLedChord &whole = chords.emplace(chord.line, chord).first->second;
+      whole.first = std::min(whole.first, chord.first);
+      whole.last = std::max(whole.last, chord.last);
+    }
+  }
+  vpLedRoi roi = a;
+  roi.chords.clear();
+  for (const auto &[line, chord] : chords) {
+    roi.chords.push_back(chord);
+  }
+  roi.box |= b.box;
+  roi.level = std::min(a.level, b.level);
+  roi.lampness = std::max(a.lampness, b.lampness);
+  roi.cutAcross = a.cutAcross || b.cutAcross;
+  roi.cutAlong = a.cutAlong || b.cutAlong;
+  return roi;
 }
 
 //! Lit pixels of a region, and the share of them at the end of the grey scale.
@@ -70,30 +95,34 @@ vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
     : recognizer(map, rig.shutter), m_rig(rig)
 {
   if (rig.width == 0 || rig.height == 0) {
-    throw vpException(vpException::badValue, "rig: picture size is 0, expected the camera's width and height");
+    throw vpException(vpException::badValue,
+                      "rig: picture size is 0, expected the camera's width and height");
   }
   m_timing = rig.lineTiming();
-  stripeAnalyzer.searchTwoPulses =
-      std::any_of(map.lamps.begin(), map.lamps.end(),
-                  [](const vpLamp &lamp) { return lamp.modulation.kind == vpModulation::Kind::twoPulse; });
+  stripeAnalyzer.searchTwoPulses = std::any_of(map.lamps.begin(), map.lamps.end(), [](const vpLamp &lamp) {
+    return lamp.modulation.kind == vpModulation::Kind::twoPulse;
+  });
 }
 
 bool vpLedDetector::detect(const vpImage<unsigned char> &I)
 {
   if (I.getWidth() != m_rig.width || I.getHeight() != m_rig.height) {
     std::ostringstream message;
-    message << "picture is " << I.getWidth() << " x " << I.getHeight() << " pixels, expected " << m_rig.width << " x "
-            << m_rig.height << " as the rig's camera says";
+    message << "picture is " << I.getWidth() << " x " << I.getHeight() << " pixels, expected " << m_rig.width
+            << " x " << m_rig.height << " as the rig's camera says";
     throw vpException(vpException::dimensionError, message.str());
   }
   const vpLinePicture picture(I, m_rig.shutter.alongColumns());
   m_observations.clear();
-  for (const vpLedRoi &roi : roiDetector.detect(picture.grey)) {
+  std::vector<vpLedRoi> rois = roiDetector.detect(picture.grey);
+  for (const vpLedRoi &roi : rois) {
     m_observations.push_back(observe(picture, roi));
   }
-  std::stable_sort(
-      m_observations.begin(), m_observations.end(),
-      [](const vpLampObservation &a, const vpLampObservation &b) { return a.features.area > b.features.area; });
+  joinPieces(picture, rois);
+  std::stable_sort(m_observations.begin(), m_observations.end(),
+                   [](const vpLampObservation &a, const vpLampObservation &b) {
+                     return a.features.area > b.features.area;
+                   });
 
   m_polygon.clear();
   m_message.clear();
@@ -103,6 +132,30 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I)
   }
   m_nb_objects = m_observations.size();
   return m_nb_objects > 0;
+}
+
+/*!
+  Regions that touch and blink as one lamp are pieces of it: a glow has no outline that would say so.
+*/
+void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois)
+{
+  for (size_t i = 0; i < rois.size(); ++i) {
+    for (size_t k = i + 1; k < rois.size(); ++k) {
+      if (m_observations[i].id.empty() || m_observations[i].id != m_observations[k].id ||
+          (rois[i].box & rois[k].box).area() == 0) {
+        continue;
+      }
+      const vpLedRoi whole = joined(rois[i], rois[k]);
+      const vpLampObservation lamp = observe(picture, whole);
+      if (lamp.id == m_observations[i].id) {
+        rois[i] = whole;
+        m_observations[i] = lamp;
+        rois.erase(rois.begin() + static_cast<long>(k));
+        m_observations.erase(m_observations.begin() + static_cast<long>(k));
+        --k;
+      }
+    }
+  }
 }
 
 vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi) const

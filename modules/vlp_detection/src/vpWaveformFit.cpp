@@ -25,7 +25,7 @@ double integral(double x, double duty)
 } // namespace
 
 vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings)
-  : m_profile(profile), m_settings(settings)
+    : m_profile(&profile), m_settings(settings)
 {
   const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
   m_middle = 0.5 * (*first + *last);
@@ -44,7 +44,7 @@ double vpWaveformFit::waveform(double x, double width, double duty)
 
 double vpWaveformFit::model(const Eigen::VectorXd &x, size_t line) const
 {
-  const double t = m_profile.time[line] - m_middle;
+  const double t = m_profile->time[line] - m_middle;
   const double turns = x(frequency) * t + x(phase);
   const double width = x(exposure) * x(frequency);
   double wave;
@@ -61,7 +61,10 @@ double vpWaveformFit::model(const Eigen::VectorXd &x, size_t line) const
   return x(offset) + std::exp(std::min(log, 20.0)) * wave;
 }
 
-bool vpWaveformFit::isFree(int parameter) const { return parameter != phaseDifference || m_settings.twoPulse; }
+bool vpWaveformFit::isFree(int parameter) const
+{
+  return parameter != phaseDifference || m_settings.twoPulse;
+}
 
 //! Weight of a parameter's prior and its mean.
 double vpWaveformFit::prior(int parameter, double &mean) const
@@ -69,8 +72,8 @@ double vpWaveformFit::prior(int parameter, double &mean) const
   auto weight = [](double sigma) { return 1 / (sigma * sigma); };
   switch (parameter) {
   case exposure:
-    mean = m_profile.exposure;
-    return weight(m_settings.exposureTolerance * m_profile.exposure);
+    mean = m_profile->exposure;
+    return weight(m_settings.exposureTolerance * m_profile->exposure);
   case duty:
     mean = 0.5;
     return weight(0.3); // the spread of a uniform one
@@ -90,9 +93,16 @@ double vpWaveformFit::prior(int parameter, double &mean) const
 
 void vpWaveformFit::keepPossible(Eigen::VectorXd &x) const
 {
-  x(frequency) = std::max(x(frequency), 0.1 / m_half);
+  // A start is good to less than half a cycle over the profile: farther off lies another one's minimum.
+  const double reach = 0.4 / m_half;
+  x(frequency) =
+      std::max(std::clamp(x(frequency), m_startFrequency - reach, m_startFrequency + reach), 0.1 / m_half);
   x(duty) = std::clamp(x(duty), 0.02, 0.98);
-  x(exposure) = std::clamp(x(exposure), 0.1 * m_profile.exposure, 5 * m_profile.exposure);
+  x(exposure) = std::clamp(x(exposure), 0.1 * m_profile->exposure, 5 * m_profile->exposure);
+  // No light is less than none: were it, a lamp's dark pulse blurred by a long exposure would do for a bright
+  // one.
+  const double error = 0.02 * std::exp(std::min(x(waveformParameters), 20.0));
+  x(offset) = std::max(x(offset), -error - 1);
   if (m_settings.twoPulse) {
     x(phaseDifference) = std::clamp(x(phaseDifference), 0.5 * x(duty), 0.5);
   }
@@ -101,7 +111,7 @@ void vpWaveformFit::keepPossible(Eigen::VectorXd &x) const
 double vpWaveformFit::cost(const Eigen::VectorXd &x, Eigen::VectorXd &weighted) const
 {
   for (Eigen::Index i = 0; i < weighted.size(); ++i) {
-    weighted(i) = m_weight(i) * (m_profile.light[i] - model(x, i));
+    weighted(i) = m_weight(i) * (m_profile->light[i] - model(x, i));
   }
   double sum = weighted.squaredNorm();
   for (int p = 0; p < x.size(); ++p) {
@@ -112,29 +122,22 @@ double vpWaveformFit::cost(const Eigen::VectorXd &x, Eigen::VectorXd &weighted) 
   return sum;
 }
 
-bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k, const Eigen::VectorXd &startEnvelope,
-                        double startExposure)
+/*!
+  Levenberg-Marquardt from m_x, with derivatives over \e reach seconds. \return the normal equations' matrix
+  there.
+*/
+Eigen::MatrixXd vpWaveformFit::descend(double reach, Eigen::VectorXd &residual)
 {
   const int n = static_cast<int>(m_weight.size());
-  m_x = Eigen::VectorXd::Zero(waveformParameters + m_settings.envelopeOrder + 1);
-  m_x(frequency) = f;
-  m_x(phase) = startPhase;
-  m_x(duty) = startDuty;
-  m_x(exposure) = startExposure > 0 ? startExposure : m_profile.exposure;
-  m_x(phaseDifference) = k;
-  const Eigen::Index bends = std::min<Eigen::Index>(startEnvelope.size(), m_settings.envelopeOrder + 1);
-  m_x.segment(waveformParameters, bends) = startEnvelope.head(bends);
-  keepPossible(m_x);
-
   const int count = static_cast<int>(m_x.size());
-  Eigen::VectorXd step(count); // for numeric derivatives, about a thousandth of a period
+  Eigen::VectorXd step(count);
   step.setConstant(1e-4);
-  step(frequency) = 5e-4 / m_half;
-  step(phase) = step(duty) = step(phaseDifference) = 5e-4;
-  step(exposure) = 1e-3 * m_profile.exposure;
+  step(phase) = step(duty) = step(phaseDifference) = reach * m_x(frequency);
+  step(frequency) = step(phase) / m_half;
+  step(exposure) = std::min(reach, 0.3 * m_x(exposure));
   step(offset) = 1e-2;
 
-  Eigen::VectorXd residual(n), shifted(n), trial(n);
+  Eigen::VectorXd shifted(n), trial(n);
   double best = cost(m_x, residual);
   Eigen::MatrixXd J(n, count);
   Eigen::MatrixXd H;
@@ -188,12 +191,45 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
       break;
     }
   }
+  return H;
+}
+
+bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
+                        const Eigen::VectorXd &startEnvelope, double startExposure)
+{
+  const int n = static_cast<int>(m_weight.size());
+  m_x = Eigen::VectorXd::Zero(waveformParameters + m_settings.envelopeOrder + 1);
+  m_startFrequency = f;
+  m_x(frequency) = f;
+  m_x(phase) = startPhase;
+  m_x(duty) = startDuty;
+  m_x(exposure) = startExposure > 0 ? startExposure : m_profile->exposure;
+  m_x(phaseDifference) = k;
+  const Eigen::Index bends = std::min<Eigen::Index>(startEnvelope.size(), m_settings.envelopeOrder + 1);
+  m_x.segment(waveformParameters, bends) = startEnvelope.head(bends);
+  keepPossible(m_x);
+
+  // An edge of the pulse is felt by the line that it falls into and by no other: derivatives over a third of
+  // a line see across the kinks that this makes, those over a fraction of it then settle.
+  const double line = 2 * m_half / std::max(1, n - 1);
+  Eigen::VectorXd residual(n);
+  Eigen::MatrixXd H;
+  for (double share : {0.33, 0.02}) {
+    H = descend(share * line, residual);
+  }
   m_chiSquare = residual.squaredNorm();
   // What the model leaves out is alike on neighbouring lines: they say less together than each says alone.
   const double alike = residual.head(n - 1).dot(residual.tail(n - 1)) / std::max(m_chiSquare, 1e-12);
   const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
   const Eigen::MatrixXd covariance = H.inverse();
-  m_sigma = (covariance.diagonal().cwiseMax(0) * std::max(1.0, together * m_chiSquare / degreesOfFreedom())).cwiseSqrt();
+  m_sigma = (covariance.diagonal().cwiseMax(0) * std::max(1.0, together * m_chiSquare / degreesOfFreedom()))
+                .cwiseSqrt();
+  // Minima lie a fraction of a line apart (above), and the curvature of one of them does not know the others.
+  const double placed =
+      0.07 * line * std::min(1.0, line / m_x(exposure)); // s, standard deviation of the pulses
+  m_sigma(frequency) = std::hypot(m_sigma(frequency), placed * m_x(frequency) / (2 * m_half));
+  m_sigma(duty) = std::hypot(m_sigma(duty), placed * m_x(frequency));
+  m_sigma(phaseDifference) = std::hypot(m_sigma(phaseDifference), placed * m_x(frequency));
   return m_x.allFinite() && m_sigma.allFinite();
 }
 
@@ -208,7 +244,7 @@ bool vpWaveformFit::preferStatedExposure()
   auto unlikely = [this](double time, double share) {
     static const double misstated = 0.5; // of the exposure's logarithm, standard deviation
     static const double usual = 0.2;     // of the duty
-    return std::hypot(std::log(time / m_profile.exposure) / misstated, (share - 0.5) / usual);
+    return std::hypot(std::log(time / m_profile->exposure) / misstated, (share - 0.5) / usual);
   };
   if (unlikely(m_x(exposure), m_x(duty)) <= unlikely(pulse, std::min(exposed, wholePeriod))) {
     return true;
@@ -218,7 +254,8 @@ bool vpWaveformFit::preferStatedExposure()
   }
   Eigen::VectorXd swapped = m_x;
   swapped(duty) = exposed;
-  swapped(waveformParameters) += std::log(std::min(1.0, m_x(duty) / exposed)) - std::log(std::min(1.0, exposed / m_x(duty)));
+  swapped(waveformParameters) +=
+      std::log(std::min(1.0, m_x(duty) / exposed)) - std::log(std::min(1.0, exposed / m_x(duty)));
   // The pulse's middle stays.
   return run(m_x(frequency), m_x(phase) + 0.5 * (exposed - m_x(duty)), exposed, 0,
              Eigen::VectorXd(swapped.tail(m_x.size() - waveformParameters)), pulse);
@@ -232,17 +269,17 @@ int vpWaveformFit::degreesOfFreedom() const
 
 double vpWaveformFit::misfit() const
 {
-  const auto n = static_cast<double>(m_profile.light.size());
+  const auto n = static_cast<double>(m_profile->light.size());
   double mean = 0;
-  for (double light : m_profile.light) {
+  for (double light : m_profile->light) {
     mean += light / n;
   }
   double power = 0, left = 0;
-  for (size_t i = 0; i < m_profile.light.size(); ++i) {
-    const double residual = m_profile.light[i] - model(m_x, i);
-    const double noise = m_profile.sigma[i];
+  for (size_t i = 0; i < m_profile->light.size(); ++i) {
+    const double residual = m_profile->light[i] - model(m_x, i);
+    const double noise = m_profile->sigma[i];
     left += residual * residual - noise * noise;
-    power += (m_profile.light[i] - mean) * (m_profile.light[i] - mean);
+    power += (m_profile->light[i] - mean) * (m_profile->light[i] - mean);
   }
   return std::max(0.0, left) / std::max(power, 1e-9);
 }

@@ -13,8 +13,8 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Least squares of a profile to a blinking lamp: light = offset + exp(envelope(y)) S(f t + phase), S the one- or two-pulse
-  waveform averaged over the exposure, y the line scaled to [-1, 1] over the profile.
+  Least squares of a profile to a blinking lamp: light = offset + exp(envelope(y)) S(f t + phase), S the one-
+  or two-pulse waveform averaged over the exposure, y the line scaled to [-1, 1] over the profile.
 */
 class vpWaveformFit
 {
@@ -31,13 +31,14 @@ public:
 
   vpWaveformFit(const vpStripeProfile &profile, const Settings &settings);
 
-  //! \param start f (Hz), phase (periods, at the middle of the profile), duty, k; \param envelope log of the light when lit.
-  //! \param exposure s, where it is to start from another one than the profile's.
-  bool run(double f, double phase, double duty, double k, const Eigen::VectorXd &envelope, double exposure = 0);
+  //! \param start f (Hz), phase (periods, at the middle of the profile), duty, k; \param envelope log of the
+  //! light when lit. \param exposure s, where it is to start from another one than the profile's.
+  bool run(double f, double phase, double duty, double k, const Eigen::VectorXd &envelope,
+           double exposure = 0);
 
   /*!
-    Pulse and exposure are both boxes, and which is which the profile does not say: swaps them where that brings exposure
-    and duty together nearer to the stated exposure and to the duties that lamps have.
+    Pulse and exposure are both boxes, and which is which the profile does not say: swaps them where that
+    brings exposure and duty together nearer to the stated exposure and to the duties that lamps have.
   */
   bool preferStatedExposure();
 
@@ -55,15 +56,17 @@ public:
 private:
   double model(const Eigen::VectorXd &x, size_t line) const;
   double cost(const Eigen::VectorXd &x, Eigen::VectorXd &weighted) const;
+  Eigen::MatrixXd descend(double reach, Eigen::VectorXd &residual);
   bool isFree(int parameter) const;
   void keepPossible(Eigen::VectorXd &x) const;
   double prior(int parameter, double &mean) const;
 
-  const vpStripeProfile &m_profile;
+  const vpStripeProfile *m_profile;
   Settings m_settings;
-  double m_middle = 0; // s
-  double m_half = 1;   // s
-  Eigen::VectorXd m_weight; // 1 / standard deviation of each line
+  double m_middle = 0;         // s
+  double m_half = 1;           // s
+  double m_startFrequency = 0; // Hz
+  Eigen::VectorXd m_weight;    // 1 / standard deviation of each line
   Eigen::VectorXd m_x;
   Eigen::VectorXd m_sigma;
   double m_chiSquare = 0;

@@ -14,7 +14,8 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-//! Probability that a chi-square of \e degrees of freedom exceeds \e x: Q(degrees / 2, x / 2) by its recurrence.
+//! Probability that a chi-square of \e degrees of freedom exceeds \e x: Q(degrees / 2, x / 2) by its
+//! recurrence.
 double chiSquareTail(double x, int degrees)
 {
   if (degrees <= 0) {
@@ -77,8 +78,10 @@ std::vector<size_t> vpLampConsensus::usable(std::vector<vpLampObservation> &obse
     const double sigma = std::sqrt(lamp.covariance.trace());
     if (twins > 1) {
       lamp.remark = "seen " + std::to_string(twins) + " times: one of them is a reflection";
-    } else if (lamp.outline.shape == vpLampOutline::Shape::region || !(sigma < placed * lamp.outline.diameter())) {
-      lamp.remark = lamp.cut ? "cut by the picture's border: its middle is uncertain" : "its middle is uncertain";
+    } else if (lamp.outline.shape == vpLampOutline::Shape::region ||
+               !(sigma < placed * lamp.outline.diameter())) {
+      lamp.remark =
+          lamp.cut ? "cut by the picture's border: its middle is uncertain" : "its middle is uncertain";
     } else {
       which.push_back(i);
     }
@@ -96,8 +99,8 @@ std::vector<vpLampSight> vpLampConsensus::sights(const std::vector<size_t> &whic
 }
 
 /*!
-  Chi-square of a fix's residuals under the rays' doubt and the map's tolerance. The fix minimises another sum, so this
-  is no less than the least there is.
+  Chi-square of a fix's residuals under the rays' doubt and the map's tolerance. The fix minimises another
+  sum, so this is no less than the least there is.
 */
 double vpLampConsensus::misfit(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const
 {
@@ -121,7 +124,8 @@ bool vpLampConsensus::agree(const vpVlpFix &fix, const std::vector<vpLampSight> 
 //! Whether lamps whose size the map states look about that large from where the fix puts the camera.
 bool vpLampConsensus::sizesFit(const vpVlpFix &fix) const
 {
-  static const double tolerance = 0.3; // of the size: the map may mean the housing, the picture shows the light
+  static const double tolerance =
+      0.3; // of the size: the map may mean the housing, the picture shows the light
   const vpHomogeneousMatrix cMw = fix.wMc.inverse();
   for (const vpLampObservation &seen : m_observations) {
     const vpLamp *lamp = m_map.find(seen.id);
@@ -147,9 +151,10 @@ vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &
   }
   std::vector<vpLampSight> lamps = sights(usable);
   vpVlpFix fix = solver(lamps);
+  // One of three could be any of them, and some few of many always agree by chance.
+  const size_t fewestLeft = usable.size() - usable.size() / 4;
   while (fix.valid && !agree(fix, lamps)) {
-    static const size_t mayLoseOne = 4; // with fewer, nobody could say which of them is wrong
-    if (lamps.size() < mayLoseOne) {
+    if (lamps.size() <= fewestLeft) {
       return refusal("lamps " + joined(fix.lamps) + " do not agree on one place");
     }
     const vpVlpFix better = withoutWorst(lamps, solver);
@@ -196,7 +201,7 @@ void vpLampConsensus::explain(const vpVlpFix &fix, const std::vector<size_t> &us
     const bool member = std::find(fix.lamps.begin(), fix.lamps.end(), lamp.id) != fix.lamps.end();
     lamp.accepted = fix.valid && member;
     if (!lamp.accepted) {
-      lamp.remark = !fix.valid             ? fix.refusal
+      lamp.remark = !fix.valid              ? fix.refusal
                     : fix.lamps.size() == 2 ? "not of the pair with the best geometry"
                                             : "not where the other lamps expect it";
     }

@@ -14,26 +14,28 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Which of the lamps seen agree on one pose. A lamp with the wrong id, a reflection, a lamp that hangs elsewhere than
-  the map says: each spoils the pose, and no covariance shows it.
+  Which of the lamps seen agree on one pose. A lamp with the wrong id, a reflection, a lamp that hangs
+  elsewhere than the map says: each spoils the pose, and no covariance shows it.
 */
 class vpLampConsensus
 {
 public:
   using Solve = std::function<vpVlpFix(const std::vector<vpLampSight> &)>;
 
-  vpLampConsensus(const vpLampMap &map, const vpVlpRig &rig, const std::vector<vpLampObservation> &observations,
-                  double mapTolerance, double outlierLikelihood);
+  vpLampConsensus(const vpLampMap &map, const vpVlpRig &rig,
+                  const std::vector<vpLampObservation> &observations, double mapTolerance,
+                  double outlierLikelihood);
 
   /*!
-    Observations with an id that no other one has, whose place is known to a fraction of the lamp. Sets the remark of
-    the others.
+    Observations with an id that no other one has, whose place is known to a fraction of the lamp. Sets the
+    remark of the others.
   */
   static std::vector<size_t> usable(std::vector<vpLampObservation> &observations);
 
   /*!
-    The pose of all usable lamps where their residuals are likely under all stated doubts and `mapTolerance`. Otherwise
-    that of those that do agree, lamps left out one by one while there are more than three; otherwise a refusal. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up to what they
+    The pose of all usable lamps where their residuals are likely under all stated doubts and `mapTolerance`.
+    Otherwise that of those that do agree, up to a quarter of the lamps left out one by one; otherwise a
+    refusal. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up to what they
     show (Birge's ratio).
   */
   vpVlpFix solve(const std::vector<size_t> &usable, const Solve &solver) const;

@@ -19,10 +19,10 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  LED-ID detection and recognition over a whole picture, the paper's section 2.1.1 and 2.1.2: LED-ROI, outline,
-  stripe features, id. As every vpDetectorBase it gives each region's corners (of its bounding box, or the four of
-  a quadrilateral) and its message (the lamp's id, empty where it is none of the map's). getCog() is the mean of the
-  corners; the projection of the lamp's middle is the observation's `point`.
+  LED-ID detection and recognition over a whole picture, the paper's section 2.1.1 and 2.1.2: LED-ROI,
+  outline, stripe features, id. As every vpDetectorBase it gives each region's corners (of its bounding box,
+  or the four of a quadrilateral) and its message (the lamp's id, empty where it is none of the map's).
+  getCog() is the mean of the corners; the projection of the lamp's middle is the observation's `point`.
 
   \code
   vpLedDetector detector(rig, map);
@@ -54,6 +54,7 @@ public:
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
 private:
+  void joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
   vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi) const;
 
   vpVlpRig m_rig;

@@ -60,7 +60,7 @@ class VISP_EXPORT vpLedRoiDetector
 {
 public:
   double levelRatio = 1.4; // between neighbouring levels, measured from the background
-  double noiseFactor = 6;  // lowest level, in standard deviations of the noise above the background
+  double noiseFactor = 4;  // lowest level, in standard deviations of the noise above the background
   double maxDarkGap = 0.6; // longest dark gap inside a lamp, as a share of its widest chord
   int minWidth = 8;        // samples
   int minHeight = 6;       // lines

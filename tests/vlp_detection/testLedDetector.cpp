@@ -1,0 +1,225 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// The detector as a whole: from a picture to named lamps.
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_detection/vpLedDetector.h>
+
+#include "common/vpExpectError.h"
+#include "common/vpLampPicture.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+
+vpVlpRig rig(unsigned int width, unsigned int height)
+{
+  vpVlpRig rig;
+  rig.width = width;
+  rig.height = height;
+  rig.camera.initPersProjWithoutDistortion(500, 500, 0.5 * width, 0.5 * height);
+  rig.shutter.rowTime = rig.shutter.exposure = 40e-6;
+  rig.shutter.rowTimeSigma = 4e-9;
+  return rig;
+}
+
+vpLampMap map()
+{
+  vpLampMap map;
+  for (double frequency : {2000, 2600, 3500}) {
+    vpLamp lamp;
+    lamp.id = "L" + std::to_string(static_cast<int>(frequency));
+    lamp.modulation.kind = vpModulation::Kind::pwm;
+    lamp.modulation.frequency = frequency;
+    map.lamps.push_back(lamp);
+  }
+  return map;
+}
+
+vpPaintedLamp lamp(double u, double v, double frequency, double duty = 0.5)
+{
+  vpPaintedLamp lamp;
+  lamp.centre = {u, v};
+  lamp.a = lamp.b = 30;
+  lamp.frequency = frequency;
+  lamp.phase = 0.3;
+  lamp.pwm(duty);
+  return lamp;
+}
+
+vpLampPicture picture()
+{
+  vpLampPicture picture;
+  picture.width = 400;
+  picture.height = 320;
+  picture.rowTime = picture.exposure = 40e-6;
+  picture.blur = 0.7;
+  picture.lamps = {lamp(80.3, 70.6, 2000), lamp(300.7, 90.2, 2600), lamp(120.4, 240.8, 3500),
+                   lamp(310, 250, 5000)};
+  return picture;
+}
+
+const vpLampObservation *find(const vpLedDetector &detector, const std::string &id)
+{
+  for (const vpLampObservation &lamp : detector.observations()) {
+    if (lamp.id == id) {
+      return &lamp;
+    }
+  }
+  return nullptr;
+}
+
+TEST(LedDetector, NamesKnownLampsAndReportsAnUnknownOne)
+{
+  vpLedDetector detector(rig(400, 320), map());
+  ASSERT_TRUE(detector.detect(picture().render()));
+  EXPECT_EQ(detector.getNbObjects(), 4u);
+  ASSERT_EQ(detector.observations().size(), 4u);
+  for (const char *id : {"L2000", "L2600", "L3500"}) {
+    ASSERT_NE(find(detector, id), nullptr) << id;
+    EXPECT_GT(find(detector, id)->confidence, 0.99);
+    EXPECT_FALSE(find(detector, id)->cut);
+  }
+  const vpLampObservation *unknown = find(detector, "");
+  ASSERT_NE(unknown, nullptr);
+  EXPECT_NEAR(unknown->features.frequency, 5000, 10);
+  EXPECT_FALSE(unknown->remark.empty());
+  EXPECT_NEAR(find(detector, "L2000")->point.x(), 80.3, 0.05);
+  EXPECT_NEAR(find(detector, "L2000")->point.y(), 70.6, 0.05);
+  EXPECT_NEAR(find(detector, "L2000")->outline.diameter(), 60, 0.1);
+}
+
+TEST(LedDetector, MessagesAndPolygonsAsEveryVispDetector)
+{
+  vpLedDetector detector(rig(400, 320), map());
+  detector.detect(picture().render());
+  vpDetectorBase &base = detector;
+  for (size_t i = 0; i < base.getNbObjects(); ++i) {
+    EXPECT_EQ(base.getMessage(i), detector.observations()[i].id);
+    EXPECT_EQ(base.getPolygon(i).size(), 4u);
+    EXPECT_NEAR(base.getCog(i).get_u(), detector.observations()[i].point.x(), 1);
+    EXPECT_NEAR(base.getCog(i).get_v(), detector.observations()[i].point.y(), 1);
+    EXPECT_NEAR(base.getBBox(i).getWidth(), 60, 2);
+  }
+}
+
+TEST(LedDetector, ColumnsSeeTheSameLampsAsRows)
+{
+  vpLampPicture painted = picture();
+  painted.columns = true;
+  vpVlpRig columns = rig(400, 320);
+  columns.shutter.readout = vpRollingShutter::Readout::columns;
+  vpLedDetector detector(columns, map());
+  ASSERT_TRUE(detector.detect(painted.render()));
+  for (const vpPaintedLamp &lamp : painted.lamps) {
+    const bool known = lamp.frequency < 4000;
+    const auto seen = find(detector, known ? "L" + std::to_string(static_cast<int>(lamp.frequency)) : "");
+    ASSERT_NE(seen, nullptr) << lamp.frequency;
+    EXPECT_LT((seen->point - lamp.centre).norm(), 0.05) << lamp.frequency;
+    EXPECT_NEAR(seen->time, 40e-6 * lamp.centre.x() + 20e-6, 2e-6) << "lines are columns";
+  }
+}
+
+TEST(LedDetector, NearestNeighbourResizeKeepsTheFrequencyNearHalfTheSamplingRate)
+{
+  // Sensor of 2.56 times the lines; every other line step is 2, the others 3: taken as even, 3500 Hz comes
+  // out wrong.
+  vpLampPicture sensor;
+  sensor.width = 512;
+  sensor.height = 512;
+  sensor.rowTime = 45e-6;
+  sensor.exposure = 60e-6;
+  sensor.blur = 1;
+  sensor.lamps = {lamp(256.2, 255.7, 3500)};
+  sensor.lamps[0].a = sensor.lamps[0].b = 150;
+  const vpImage<unsigned char> full = sensor.render();
+  vpImage<unsigned char> delivered(200, 200);
+  for (unsigned int y = 0; y < 200; ++y) {
+    for (unsigned int x = 0; x < 200; ++x) {
+      delivered[y][x] = full[static_cast<unsigned int>(y * 2.56)][static_cast<unsigned int>(x * 2.56)];
+    }
+  }
+  vpVlpRig resized = rig(200, 200);
+  resized.shutter.rowTime = 45e-6;
+  resized.shutter.exposure = 60e-6;
+  resized.resize.method = vpPictureResize::Method::nearest;
+  resized.resize.sourceWidth = resized.resize.sourceHeight = 512;
+  vpLedDetector detector(resized, map());
+  ASSERT_TRUE(detector.detect(delivered));
+  ASSERT_EQ(detector.observations().size(), 1u);
+  EXPECT_EQ(detector.observations()[0].id, "L3500");
+  EXPECT_NEAR(detector.observations()[0].features.frequency, 3500, 5);
+}
+
+TEST(LedDetector, LampCutByTheBorderIsFlagged)
+{
+  vpLampPicture painted = picture();
+  painted.lamps = {lamp(8, 150, 2000)};
+  vpLedDetector detector(rig(400, 320), map());
+  ASSERT_TRUE(detector.detect(painted.render()));
+  ASSERT_EQ(detector.observations().size(), 1u);
+  EXPECT_TRUE(detector.observations()[0].cut);
+  EXPECT_EQ(detector.observations()[0].id, "L2000");
+}
+
+TEST(LedDetector, UnmodulatedLampAndWindowAreNoLampsOfTheMap)
+{
+  vpLampPicture painted = picture();
+  vpPaintedLamp window = lamp(300, 240, 0);
+  window.rectangle(120, 90);
+  window.pulses = {{0, 1}};
+  vpPaintedLamp steady = lamp(80, 80, 0);
+  steady.pulses = {{0, 1}};
+  painted.lamps = {window, steady};
+  vpLedDetector detector(rig(400, 320), map());
+  ASSERT_TRUE(detector.detect(painted.render()));
+  EXPECT_EQ(detector.observations().size(), 2u);
+  for (const vpLampObservation &seen : detector.observations()) {
+    EXPECT_TRUE(seen.id.empty());
+    EXPECT_EQ(seen.features.signal, vpStripeFeatures::Signal::unmodulated);
+  }
+}
+
+TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
+{
+  vpLampPicture painted = picture();
+  for (vpPaintedLamp &lamp : painted.lamps) {
+    lamp.amplitude = 900; // lit lines clip at 255
+  }
+  vpLedDetector detector(rig(400, 320), map());
+  ASSERT_TRUE(detector.detect(painted.render()));
+  const vpLampObservation *seen = find(detector, "L2000");
+  ASSERT_NE(seen, nullptr);
+  EXPECT_GT(seen->saturated, 0.3);
+  EXPECT_LT((seen->point - painted.lamps[0].centre).norm(), 0.5);
+}
+
+TEST(LedDetector, RefusesAPictureOfAnotherSize)
+{
+  vpLedDetector detector(rig(400, 320), map());
+  const vpImage<unsigned char> I(320, 402);
+  vpExpectError([&] { detector.detect(I); }, {"402 x 320", "400 x 320"});
+  vpExpectError([&] { vpLedDetector(rig(0, 0), map()); }, {"size"});
+}
+
+TEST(LedDetector, DarkWhiteAndTinyPicturesHoldNoKnownLamp)
+{
+  for (const auto &[width, height] : {std::pair{400u, 320u}, {1u, 1u}, {400u, 1u}, {1u, 320u}}) {
+    for (unsigned char grey : {0, 128, 255}) {
+      vpLedDetector detector(rig(width, height), map());
+      detector.detect(vpImage<unsigned char>(height, width, grey));
+      for (const vpLampObservation &seen : detector.observations()) {
+        EXPECT_TRUE(seen.id.empty()) << width << " x " << height << ", grey " << static_cast<int>(grey);
+      }
+    }
+  }
+}
+
+} // namespace

@@ -1,0 +1,146 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Recognition: the right lamp where one fits, none where none does or two do, every doubt in it.
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_detection/vpLedIdRecognizer.h>
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+
+vpLamp lamp(const std::string &id, double frequency)
+{
+  vpLamp lamp;
+  lamp.id = id;
+  lamp.modulation.kind = vpModulation::Kind::pwm;
+  lamp.modulation.frequency = frequency;
+  return lamp;
+}
+
+vpLamp lamp(const std::string &id, double frequency, double duty)
+{
+  vpLamp with = lamp(id, frequency);
+  with.modulation.duty = duty;
+  return with;
+}
+
+vpLampObservation stripes(double frequency, double sigma, double duty = 0.5)
+{
+  vpLampObservation observation;
+  observation.features.signal = vpStripeFeatures::Signal::pwm;
+  observation.features.frequency = frequency;
+  observation.features.frequencySigma = sigma;
+  observation.features.duty = duty;
+  observation.features.dutySigma = 0.01;
+  return observation;
+}
+
+vpRollingShutter shutter(double relativeSigma)
+{
+  vpRollingShutter shutter;
+  shutter.rowTime = 40e-6;
+  shutter.rowTimeSigma = relativeSigma * shutter.rowTime;
+  shutter.exposure = 40e-6;
+  return shutter;
+}
+
+vpLampObservation recognized(const vpLampMap &map, vpLampObservation observation, double rowTimeSigma = 1e-4)
+{
+  vpLedIdRecognizer(map, shutter(rowTimeSigma)).recognize(observation);
+  return observation;
+}
+
+TEST(LedIdRecognizer, NearestLampThatFits)
+{
+  const vpLampMap map{{lamp("A", 2000), lamp("B", 2100), lamp("C", 3000)}};
+  const vpLampObservation seen = recognized(map, stripes(2098, 3));
+  EXPECT_EQ(seen.id, "B");
+  EXPECT_GT(seen.confidence, 0.99);
+  EXPECT_TRUE(seen.remark.empty());
+}
+
+TEST(LedIdRecognizer, NoLampFits)
+{
+  const vpLampMap map{{lamp("A", 2000), lamp("B", 2100)}};
+  const vpLampObservation seen = recognized(map, stripes(2050, 3));
+  EXPECT_TRUE(seen.id.empty());
+  EXPECT_GT(seen.confidence, 0.9); // of being none of them
+  EXPECT_FALSE(seen.remark.empty());
+}
+
+TEST(LedIdRecognizer, TwoLampsFit)
+{
+  const vpLampMap map{{lamp("A", 2000), lamp("B", 2010)}};
+  const vpLampObservation seen = recognized(map, stripes(2005, 10));
+  EXPECT_TRUE(seen.id.empty());
+  EXPECT_NE(seen.remark.find("2 lamps"), std::string::npos) << seen.remark;
+}
+
+TEST(LedIdRecognizer, DutyTellsLampsOfOneFrequencyApart)
+{
+  const vpLampMap map{{lamp("A", 2000, 0.3), lamp("B", 2000, 0.7)}};
+  EXPECT_EQ(recognized(map, stripes(2001, 3, 0.31)).id, "A");
+  EXPECT_EQ(recognized(map, stripes(2001, 3, 0.69)).id, "B");
+  EXPECT_TRUE(recognized(map, stripes(2001, 3, 0.5)).id.empty());
+}
+
+TEST(LedIdRecognizer, DutyThatNobodyMeasuredTakesNoPart)
+{
+  const vpLampMap map{{lamp("A", 2000), lamp("B", 3000)}};
+  EXPECT_EQ(recognized(map, stripes(2001, 3, 0.1)).id, "A");
+}
+
+TEST(LedIdRecognizer, RowTimeAndOscillatorWidenTheMatch)
+{
+  vpLampMap map{{lamp("A", 2000), lamp("B", 3000)}};
+  EXPECT_TRUE(recognized(map, stripes(2030, 2)).id.empty());
+  EXPECT_EQ(recognized(map, stripes(2030, 2), 0.01).id, "A"); // row time uncertain by 1 %
+  map.lamps[0].oscillatorPpm = 10000;
+  EXPECT_EQ(recognized(map, stripes(2030, 2)).id, "A");
+}
+
+TEST(LedIdRecognizer, UncertainFrequencyIsNoId)
+{
+  const vpLampMap map{{lamp("A", 2000)}};
+  EXPECT_TRUE(recognized(map, stripes(2000, 400)).id.empty());
+}
+
+TEST(LedIdRecognizer, PhaseDifferenceTellsTwoPulseLampsApart)
+{
+  vpLampMap map{{lamp("A", 1500, 0.3), lamp("B", 1500, 0.3), lamp("C", 1500, 0.3)}};
+  map.lamps[0].modulation.kind = map.lamps[1].modulation.kind = vpModulation::Kind::twoPulse;
+  map.lamps[0].modulation.phaseDifference = 0.25;
+  map.lamps[1].modulation.phaseDifference = 0.35;
+  vpLampObservation seen = stripes(1501, 2, 0.3);
+  EXPECT_EQ(recognized(map, seen).id, "C");
+  seen.features.signal = vpStripeFeatures::Signal::twoPulse;
+  seen.features.phaseDifference = 0.345;
+  seen.features.phaseDifferenceSigma = 0.003;
+  EXPECT_EQ(recognized(map, seen).id, "B");
+  seen.features.phaseDifference = 0.30;
+  EXPECT_TRUE(recognized(map, seen).id.empty());
+}
+
+TEST(LedIdRecognizer, CodedAndSteadyRegionsHaveNoId)
+{
+  const vpLampMap map{{lamp("A", 2000)}};
+  vpLampObservation seen = stripes(2000, 2);
+  seen.features.signal = vpStripeFeatures::Signal::coded;
+  EXPECT_TRUE(recognized(map, seen).id.empty());
+  EXPECT_NE(recognized(map, seen).remark.find("coded"), std::string::npos);
+  seen.features.signal = vpStripeFeatures::Signal::unmodulated;
+  EXPECT_TRUE(recognized(map, seen).id.empty());
+}
+
+TEST(LedIdRecognizer, EmptyMapKnowsNobody)
+{
+  EXPECT_TRUE(recognized({}, stripes(2000, 2)).id.empty());
+}
+
+} // namespace

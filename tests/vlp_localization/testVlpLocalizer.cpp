@@ -1,0 +1,221 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// From a picture to a pose: right where the lamps allow it, a refusal where they do not.
+
+#include <algorithm>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+#include <visp3/vlp_localization/vpVlpLocalizer.h>
+
+#include "common/vpLampPicture.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+
+//! A level camera that looks up, its base in the same place, under lamps of 0.16 m.
+struct Room {
+  struct Hung {
+    std::string id;
+    Eigen::Vector3d position; // m, where it really hangs
+    double frequency;         // Hz, 0: steady
+  };
+
+  double x = 0.1, y = -0.05, yaw = 0.6; // m, rad
+  double px = 600;
+  std::vector<Hung> lamps = {{"A", {-0.4, -0.3, 1.6}, 1800},
+                             {"B", {0.4, -0.3, 1.6}, 2300},
+                             {"C", {0.4, 0.3, 1.6}, 2900},
+                             {"D", {-0.4, 0.3, 1.6}, 3600}};
+  vpLampMap map;
+
+  Room()
+  {
+    for (const Hung &hung : lamps) {
+      vpLamp lamp;
+      lamp.id = hung.id;
+      lamp.position = hung.position;
+      lamp.size = 0.16;
+      lamp.modulation.kind = vpModulation::Kind::pwm;
+      lamp.modulation.frequency = hung.frequency;
+      map.lamps.push_back(lamp);
+    }
+  }
+
+  vpVlpRig rig() const
+  {
+    vpVlpRig rig;
+    rig.width = 640;
+    rig.height = 480;
+    rig.camera.initPersProjWithoutDistortion(px, px, 319.5, 239.5);
+    rig.shutter.rowTime = rig.shutter.exposure = 40e-6;
+    rig.shutter.rowTimeSigma = 4e-9;
+    return rig;
+  }
+
+  vpVlpFrame frame(unsigned int seed = 1) const
+  {
+    vpLampPicture picture;
+    picture.rowTime = picture.exposure = 40e-6;
+    picture.blur = 0.7;
+    picture.seed = seed;
+    for (const Hung &hung : lamps) {
+      const double east = hung.position.x() - x, north = hung.position.y() - y;
+      const double right = std::cos(yaw) * east + std::sin(yaw) * north;
+      const double down = -std::sin(yaw) * east + std::cos(yaw) * north;
+      vpPaintedLamp lamp;
+      lamp.centre = {319.5 + px * right / hung.position.z(), 239.5 + px * down / hung.position.z()};
+      lamp.a = lamp.b = 0.08 * px / hung.position.z();
+      lamp.frequency = hung.frequency;
+      lamp.phase = 0.37 * seed + 0.1 * hung.frequency / 1000;
+      if (hung.frequency > 0) {
+        lamp.pwm(0.5);
+      }
+      picture.lamps.push_back(lamp);
+    }
+    vpVlpFrame frame;
+    frame.I = picture.render();
+    frame.timestamp = 12.5;
+    return frame;
+  }
+
+  vpVlpLocation locate(vpVlpLocalizer::Solver solver = vpVlpLocalizer::Solver::all) const
+  {
+    vpVlpLocalizer localizer(rig(), map);
+    localizer.solver = solver;
+    return localizer.process(frame());
+  }
+
+  double error(const vpVlpFix &fix) const { return std::hypot(fix.wMb[0][3] - x, fix.wMb[1][3] - y); }
+};
+
+const vpLampObservation *find(const vpVlpLocation &location, const std::string &id)
+{
+  const auto found = std::find_if(location.observations.begin(), location.observations.end(),
+                                  [&](const vpLampObservation &lamp) { return lamp.id == id; });
+  return found == location.observations.end() ? nullptr : &*found;
+}
+
+TEST(VlpLocalizer, MillimetreFromAllLampsWithinItsCovariance)
+{
+  const Room room;
+  vpVlpLocalizer localizer(room.rig(), room.map);
+  double worst = 0, nees = 0;
+  const int frames = 20;
+  for (int seed = 1; seed <= frames; ++seed) {
+    const vpVlpLocation location = localizer.process(room.frame(static_cast<unsigned int>(seed)));
+    const vpVlpFix &fix = location.fix;
+    ASSERT_TRUE(fix.valid) << fix.refusal;
+    EXPECT_EQ(location.timestamp, 12.5);
+    EXPECT_EQ(fix.lamps.size(), 4u);
+    for (const vpLampObservation &lamp : location.observations) {
+      EXPECT_TRUE(lamp.accepted) << lamp.id << ": " << lamp.remark << ", " << lamp.features.frequency
+                                 << " +- " << lamp.features.frequencySigma << " Hz at "
+                                 << lamp.point.transpose();
+    }
+    worst = std::max(worst, room.error(fix));
+    const Eigen::Vector2d e(fix.wMb[0][3] - room.x, fix.wMb[1][3] - room.y);
+    nees += e.dot(fix.covariance.topLeftCorner<2, 2>().inverse() * e) / frames;
+    EXPECT_NEAR(std::atan2(fix.wMb[1][0], fix.wMb[0][0]), room.yaw, 0.001);
+  }
+  EXPECT_LT(worst, 0.0005);
+  EXPECT_LT(nees, 4); // 2 expected; 99.9 % of the means of 20 lie below 3.6
+}
+
+TEST(VlpLocalizer, TwoSolverUsesTwoLamps)
+{
+  const Room room;
+  const vpVlpLocation location = room.locate(vpVlpLocalizer::Solver::two);
+  ASSERT_TRUE(location.fix.valid) << location.fix.refusal;
+  EXPECT_EQ(location.fix.lamps.size(), 2u);
+  EXPECT_LT(room.error(location.fix), 0.001);
+  EXPECT_EQ(std::count_if(location.observations.begin(), location.observations.end(),
+                          [](const vpLampObservation &lamp) { return lamp.accepted; }),
+            2);
+}
+
+TEST(VlpLocalizer, LampThatHangsElsewhereIsLeftOut)
+{
+  Room room;
+  room.map.lamps[1].position.x() += 0.4; // the map is wrong about B
+  const vpVlpLocation location = room.locate();
+  ASSERT_TRUE(location.fix.valid) << location.fix.refusal;
+  EXPECT_LT(room.error(location.fix), 0.001);
+  ASSERT_NE(find(location, "B"), nullptr);
+  EXPECT_FALSE(find(location, "B")->accepted);
+  EXPECT_FALSE(find(location, "B")->remark.empty());
+}
+
+TEST(VlpLocalizer, ThreeLampsThatDisagreeGiveNoPosition)
+{
+  Room room;
+  room.lamps.pop_back();
+  room.map.lamps[1].position.x() += 0.4;
+  const vpVlpLocation location = room.locate();
+  EXPECT_FALSE(location.fix.valid);
+  EXPECT_NE(location.fix.refusal.find("do not agree"), std::string::npos) << location.fix.refusal;
+}
+
+TEST(VlpLocalizer, TwoLampsOfWrongSizeGiveNoPosition)
+{
+  Room room;
+  room.lamps.resize(2);
+  room.map.lamps[1].position.x() +=
+      0.8; // so the height would come out double, and the lamps too small for it
+  const vpVlpLocation location = room.locate();
+  EXPECT_FALSE(location.fix.valid) << room.error(location.fix);
+}
+
+TEST(VlpLocalizer, OneIdSeenTwiceCountsForNeither)
+{
+  Room room;
+  room.lamps.push_back({"reflection of A", {0, 0, 1.6}, room.lamps[0].frequency});
+  const vpVlpLocation location = room.locate();
+  ASSERT_TRUE(location.fix.valid) << location.fix.refusal;
+  EXPECT_EQ(location.fix.lamps.size(), 3u);
+  EXPECT_LT(room.error(location.fix), 0.001);
+  ASSERT_NE(find(location, "A"), nullptr);
+  EXPECT_NE(find(location, "A")->remark.find("2 times"), std::string::npos);
+}
+
+TEST(VlpLocalizer, NoLampOrOneLampIsARefusalInOneLine)
+{
+  Room room;
+  room.lamps.resize(1);
+  EXPECT_NE(room.locate().fix.refusal.find("one lamp"), std::string::npos);
+  room.lamps.clear();
+  const vpVlpLocation nothing = room.locate();
+  EXPECT_FALSE(nothing.fix.valid);
+  EXPECT_NE(nothing.fix.refusal.find("no lamp"), std::string::npos);
+  EXPECT_TRUE(nothing.observations.empty());
+}
+
+TEST(VlpLocalizer, SteadyLampsAreSeenAndDoNotCount)
+{
+  Room room;
+  room.lamps[0].frequency = 0;
+  const vpVlpLocation location = room.locate();
+  ASSERT_TRUE(location.fix.valid) << location.fix.refusal;
+  EXPECT_EQ(location.observations.size(), 4u);
+  EXPECT_EQ(location.fix.lamps.size(), 3u);
+  EXPECT_LT(room.error(location.fix), 0.001);
+}
+
+TEST(VlpLocalizer, RegionsWithoutIdSayWhy)
+{
+  Room room;
+  room.lamps[2].frequency = 4800;
+  const vpVlpLocation location = room.locate();
+  for (const vpLampObservation &lamp : location.observations) {
+    EXPECT_EQ(lamp.id.empty(), !lamp.accepted);
+    EXPECT_EQ(lamp.remark.empty(), lamp.accepted);
+  }
+}
+
+} // namespace
