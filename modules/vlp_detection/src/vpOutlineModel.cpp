@@ -26,7 +26,8 @@ Eigen::Matrix2d onEigenvalues(const Eigen::Matrix2d &A, F f)
   return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-const double alongLines = 0.12; // sine of seven degrees: sides closer to the lines' direction show no clear ends
+const double alongLines =
+    0.12; // sine of seven degrees: sides closer to the lines' direction show no clear ends
 
 double wrapped(double angle)
 {
@@ -169,13 +170,15 @@ vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &
     if (std::abs(std::cos(model.m_angle[axis])) < alongLines) {
       // Where the lamp is dark no line shows these sides: the lit lines lie anywhere between them.
       const double hidden = model.m_offset[1 - axis] - model.m_offset[axis]; // half of what a square has more
-      model.m_middleSigma[axis] = std::max(0.3, 2 * hidden / std::sqrt(12.0));
+      static const double blurred = 1; // px, that light may reach over them or fall short of them
+      model.m_middleSigma[axis] = blurred + 2 * std::max(0.0, hidden) / std::sqrt(12.0);
     }
   }
   return model;
 }
 
-double vpQuadrilateralModel::distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const
+double vpQuadrilateralModel::distance(const Eigen::Vector2d &x, Vector &derivative,
+                                      Eigen::Vector2d &normal) const
 {
   const Eigen::Vector2d d = x - m_inside;
   double farthest = -std::numeric_limits<double>::max();
@@ -258,7 +261,7 @@ bool vpQuadrilateralModel::stretch(double v, double distance, double &first, dou
 
 bool vpQuadrilateralModel::crossedWell(double v, bool first, bool last) const
 {
-  static const double fromCorner = 1.5; // px
+  static const double fromCorner = 2.5; // px, blurred corners
   double from = -1e9, to = 1e9;
   int firstSide = -1, lastSide = -1;
   for (int i = 0; i < 4; ++i) {
