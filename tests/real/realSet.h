@@ -22,8 +22,9 @@ using namespace VISP_NAMESPACE_NAME;
 #endif
 
 /*!
-  One folder of VLP_INPUT_IMAGE_PATH: its set.yaml, and rig and lamp map as a user would write them from it. What a
-  set.yaml leaves out (exposure, row-time sigma, principal point) is what a user without a calibration would state.
+  One folder of VLP_INPUT_IMAGE_PATH: its set.yaml, and rig and lamp map as a user would write them from it.
+  What a set.yaml leaves out (exposure, row-time sigma, principal point) is what a user without a calibration
+  would state.
 */
 class RealSet
 {
@@ -67,7 +68,9 @@ public:
     rig.shutter.rowTime = 1e-6 * number(image["row_time_us"] ? image : shutter, "row_time_us", 40);
     rig.shutter.rowTimeSigma = vpVlpRig::uncalibratedRowTime * rig.shutter.rowTime;
     rig.shutter.exposure = exposure > 0 ? exposure : rig.shutter.rowTime;
-    const YAML::Node readout = image["readout"] ? image["readout"] : shutter ? shutter["readout"] : YAML::Node();
+    const YAML::Node readout = image["readout"] ? image["readout"]
+                               : shutter        ? shutter["readout"]
+                                                : YAML::Node();
     if (readout && readout.as<std::string>() == "columns") {
       rig.shutter.readout = vpRollingShutter::Readout::columns;
     }
@@ -124,10 +127,10 @@ private:
 };
 
 //! Skips a test where the real pictures are not there.
-#define VLP_REAL_SET(set, name)                                                                                        \
-  RealSet set(name);                                                                                                   \
-  if (!set.present()) {                                                                                                \
-    GTEST_SKIP() << "real pictures used: 0 (VLP_INPUT_IMAGE_PATH is not set)";                                         \
+#define VLP_REAL_SET(set, name)                                                                              \
+  RealSet set(name);                                                                                         \
+  if (!set.present()) {                                                                                      \
+    GTEST_SKIP() << "real pictures used: 0 (VLP_INPUT_IMAGE_PATH is not set)";                               \
   }
 
 #endif

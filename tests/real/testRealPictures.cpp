@@ -2,7 +2,8 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// Real pictures of the robot's own kind of rig and of phones: ids, positions and refusals that they allow to check.
+// Real pictures of the robot's own kind of rig and of phones: ids, positions and refusals that they allow to
+// check.
 
 #include "realSet.h"
 
@@ -57,7 +58,8 @@ TEST(Ub300, SixOfSixIdsWhateverExposureIsClaimed)
 }
 
 //! Picture with a recorded position, its camera at the base: the pose's error in metres and degrees.
-void expectUb300(const YAML::Node &image, const vpVlpFix &fix, const std::string &lamps, double metres, double turn)
+void expectUb300(const YAML::Node &image, const vpVlpFix &fix, const std::string &lamps, double metres,
+                 double turn)
 {
   ASSERT_TRUE(fix.valid) << fix.refusal;
   const YAML::Node place = image["camera_xy_m"];
@@ -130,8 +132,9 @@ TEST(LumiaRoom, RecordedPositionWithMountAndWithFreeAttitude)
     const YAML::Node place = image["camera_position_m"];
     const double error =
         std::hypot(fix.wMc[0][3] - place[0].as<double>(), fix.wMc[1][3] - place[1].as<double>());
-    std::cout << frame.name << ", attitude " << (attitude == vpManyLampSolver::Attitude::mount ? "mount" : "free")
-              << ": " << 100 * error << " cm\n";
+    std::cout << frame.name << ", attitude "
+              << (attitude == vpManyLampSolver::Attitude::mount ? "mount" : "free") << ": " << 100 * error
+              << " cm\n";
     EXPECT_LT(error, 0.035);
   }
 }
@@ -181,8 +184,8 @@ TEST(Ub300Coded, EveryLampCodedInEveryFrameAndSteady)
   ASSERT_EQ(first.size(), 3u);
   for (size_t k = 0; k < first.size(); ++k) {
     ASSERT_EQ(u[k].size(), 6u);
-    std::cout << "coded lamp at " << first[k].transpose() << ": standard deviation " << deviation(u[k]) << ", "
-              << deviation(v[k]) << " px\n";
+    std::cout << "coded lamp at " << first[k].transpose() << ": standard deviation " << deviation(u[k])
+              << ", " << deviation(v[k]) << " px\n";
     EXPECT_LT(deviation(u[k]), 0.3);
     EXPECT_LT(deviation(v[k]), 0.3);
   }

@@ -218,7 +218,8 @@ TEST(LineTiming, AreaAveragesOverItsSensorLines)
 {
   const vpLineTiming timing(shutter(Readout::columns), resize(Method::area, 1280, 960), 640, 480);
   EXPECT_DOUBLE_EQ(timing.middle(0), 0.5 * 40e-6 + 50e-6); // sensor lines 0 and 1
-  EXPECT_DOUBLE_EQ(timing.averaging(), std::sqrt(3) * 40e-6); // lines 0 and 40 us: variance (80^2 - 40^2) / 12
+  EXPECT_DOUBLE_EQ(timing.averaging(),
+                   std::sqrt(3) * 40e-6); // lines 0 and 40 us: variance (80^2 - 40^2) / 12
   EXPECT_EQ(vpLineTiming(shutter(Readout::rows), resize(Method::area, 640, 480), 640, 480).averaging(), 0);
 }
 

@@ -66,7 +66,7 @@ struct Scene {
     }
     const vpOutlineFit fit =
         vpOutlineFitter().fit(lines.grey, timing.linePositions(), timing.samplePositions(), rois[0]);
-    return vpStripeAnalyzer().analyze(vpStripeProfile::along(lines.grey, timing, fit));
+    return vpStripeAnalyzer().analyze(vpStripeProfile::along(lines.grey, timing, fit, rois[0]));
   }
 };
 

@@ -163,7 +163,7 @@ vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpL
   vpLampObservation lamp;
   const vpOutlineFit fit =
       outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(), roi);
-  lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit));
+  lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit, roi));
   measureArea(picture, roi, lamp);
   lamp.outline = picture.transposed ? swapped(fit.outline) : fit.outline;
   lamp.point = lamp.outline.middle(m_rig.camera, verticalInCamera(m_rig.bMc));

@@ -48,7 +48,8 @@ vpLedIdRecognizer::vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutte
   }
 }
 
-std::vector<vpLedIdRecognizer::Match> vpLedIdRecognizer::candidates(const vpLampObservation &observation) const
+std::vector<vpLedIdRecognizer::Match>
+vpLedIdRecognizer::candidates(const vpLampObservation &observation) const
 {
   const vpStripeFeatures &seen = observation.features;
   std::vector<Match> matches;

@@ -4,375 +4,15 @@
  */
 #include <visp3/vlp_detection/vpOutlineFitter.h>
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <opencv2/imgproc.hpp>
 
 #include "vpChordShape.h"
-#include "vpOutlineModel.h"
+#include "vpEdgeFit.h"
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-
-//! Share of a pixel's light, and its derivatives by an outward shift of the edge and by the blur.
-struct Edge {
-  double share;
-  double byShift;
-  double byBlur;
-};
-
-/*!
-  A pixel whose middle lies \e d outside a straight edge of normal \e n and Gaussian spread \e blur. Integrating over
-  the pixel's square adds a box of width |n_x| and one of width |n_y| to the Gaussian: the share is the second
-  difference of the Gaussian's integral taken twice more. From a blur of half a pixel on, a Gaussian of the same
-  variance does as well.
-*/
-Edge edgeAt(double d, const Eigen::Vector2d &n, double blur)
-{
-  static const double boxes = 1.0 / 12; // px^2, variance of both
-  auto phi = [](double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); };
-  auto below = [](double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); };
-  static const double wide = 0.5;
-  const double spread = std::sqrt(blur * blur + boxes);
-  if (blur > wide || std::abs(d) > 1 + 4 * spread) {
-    const double z = -d / spread;
-    return {below(z), phi(z) / spread, -z * phi(z) * blur / (spread * spread)};
-  }
-  const double p = std::max(0.5 * std::abs(n.x()), 0.02);
-  const double q = std::max(0.5 * std::abs(n.y()), 0.02);
-  const double shift[4] = {p + q, p - q, q - p, -p - q};
-  static const double sign[4] = {1, -1, -1, 1};
-  Edge edge{0, 0, 0};
-  for (int i = 0; i < 4; ++i) {
-    const double z = (shift[i] - d) / blur;
-    const double once = z * below(z) + phi(z);
-    edge.share += sign[i] * 0.5 * (z * once + below(z));
-    edge.byShift += sign[i] * once;
-    edge.byBlur += sign[i] * below(z);
-  }
-  const double area = 4 * p * q;
-  edge.share *= blur * blur / area;
-  edge.byShift *= blur / area;
-  edge.byBlur *= blur / area; // heat equation: d/d blur = blur d^2/d shift^2
-  return edge;
-}
-
-double median(std::vector<double> values)
-{
-  if (values.empty()) {
-    return 0;
-  }
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/*!
-  One end of one line: the normal equations of the outline's parameters and the blur from its pixels, with the
-  end's own background and amplitude eliminated.
-*/
-template <int N>
-struct LineEnd {
-  Eigen::Matrix<double, N, N> H;
-  Eigen::Matrix<double, N, 1> g;
-  double squares = 0; // sum of squared residuals, grey levels
-  int pixels = 0;
-  double amplitude = 0;  // grey levels
-  double background = 0; // grey value
-  double offset = 0;     // px, how far this end alone would move the edge outwards
-  double offsetWeight = 0;
-};
-
-template <class Model>
-class Fit
-{
-public:
-  static constexpr int N = Model::parameters + 1;
-  using End = LineEnd<N>;
-
-  Fit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
-      const std::vector<double> &samplePositions, const Model &start)
-      : m_lines(lines), m_v(linePositions), m_u(samplePositions), m_model(start)
-  {
-  }
-
-  bool run(const cv::Rect &box, double shapeSigma, int maxIterations);
-  vpOutlineFit result() const;
-  //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc.
-  double evenness() const;
-  //! Mean squared residual of all lit ends, the outliers among them too, grey levels^2; and how many pixels that is of.
-  double misfit() const { return m_misfit; }
-  double pixels() const { return m_pixels; }
-  //! Chi-square of the shape's prior.
-  double prior() const { return m_prior; }
-
-private:
-  std::optional<End> lineEnd(int line, double first, double last) const;
-  void collect(int line, double v, std::vector<End> &ends) const;
-  std::vector<End> lineEnds() const;
-  void assemble(const std::vector<End> &ends, Eigen::MatrixXd &H, Eigen::VectorXd &g);
-
-  const cv::Mat_<unsigned char> &m_lines;
-  const std::vector<double> &m_v;
-  const std::vector<double> &m_u;
-  Model m_model;
-  double m_blur = 1.5;
-  double m_reach = 0; // px on either side of the edge
-  Eigen::MatrixXd m_covariance;
-  double m_residual = 0;
-  double m_inflation = 1;
-  double m_background = 0;
-  double m_noise = 0;
-  double m_misfit = 0;
-  double m_pixels = 0;
-  double m_prior = 0;
-  double m_members = 0; // ends that take part
-};
-
-template <class Model>
-std::optional<typename Fit<Model>::End> Fit<Model>::lineEnd(int line, double first, double last) const
-{
-  const int from = std::max(0, static_cast<int>(std::ceil(first)));
-  const int to = std::min(m_lines.cols - 1, static_cast<int>(std::floor(last)));
-  if (to - from < 3) {
-    return std::nullopt;
-  }
-  // Columns: 1, D; then the derivatives of D by the model's parameters and the blur.
-  const unsigned char *row = m_lines[line];
-  const int n = to - from + 1;
-  Eigen::Matrix<double, Eigen::Dynamic, N> J(n, N);
-  Eigen::VectorXd D(n);
-  Eigen::VectorXd I(n);
-  Eigen::VectorXd slope(n);
-  for (int i = 0; i < n; ++i) {
-    typename Model::Vector derivative;
-    Eigen::Vector2d normal;
-    const double d = m_model.distance({m_u[from + i], m_v[line]}, derivative, normal);
-    const Edge edge = edgeAt(d, normal, m_blur);
-    D(i) = edge.share;
-    J.row(i) << -edge.byShift * derivative.transpose(), edge.byBlur;
-    I(i) = row[from + i];
-    slope(i) = edge.byShift;
-  }
-  if (D.maxCoeff() < 0.6 || D.minCoeff() > 0.4) {
-    return std::nullopt; // the edge itself is not in it
-  }
-  const double meanI = I.mean();
-  const double meanD = D.mean();
-  I.array() -= meanI;
-  D.array() -= meanD;
-  slope.array() -= slope.mean();
-  J.rowwise() -= J.colwise().mean().eval();
-  const double DD = D.squaredNorm();
-  End end;
-  end.amplitude = D.dot(I) / DD;
-  end.background = meanI - end.amplitude * meanD;
-  const Eigen::VectorXd residual = I - end.amplitude * D;
-  J -= D * (D.transpose() * J / DD);
-  J *= end.amplitude;
-  slope = end.amplitude * (slope - D * (D.dot(slope) / DD));
-  end.H = J.transpose() * J;
-  end.g = J.transpose() * residual;
-  end.squares = residual.squaredNorm();
-  end.pixels = n;
-  end.offsetWeight = slope.squaredNorm();
-  end.offset = slope.dot(residual) / std::max(end.offsetWeight, 1e-12);
-  return end;
-}
-
-template <class Model>
-void Fit<Model>::collect(int line, double v, std::vector<End> &ends) const
-{
-  double outerFirst, outerLast, first, last, innerFirst, innerLast;
-  if (!m_model.stretch(v, 0, first, last) || !m_model.stretch(v, m_reach, outerFirst, outerLast)) {
-    return;
-  }
-  // Where the outline crosses the line at a slant, the same distance from the edge is a longer stretch.
-  auto add = [&](double from, double to) {
-    if (!m_model.crossedWell(v, from <= first, to >= last)) {
-      return;
-    }
-    if (auto end = lineEnd(line, from, to)) {
-      ends.push_back(*end);
-    }
-  };
-  if (m_model.stretch(v, -m_reach, innerFirst, innerLast) && innerLast - innerFirst > 1) {
-    add(outerFirst, innerFirst);
-    add(innerLast, outerLast);
-  } else {
-    add(outerFirst, outerLast);
-  }
-}
-
-template <class Model>
-std::vector<typename Fit<Model>::End> Fit<Model>::lineEnds() const
-{
-  double top, bottom;
-  m_model.vertical(top, bottom);
-  std::vector<End> ends;
-  const int from = std::max(0, static_cast<int>(std::floor(top)) - 1);
-  const int to = std::min(m_lines.rows - 1, static_cast<int>(std::ceil(bottom)) + 1);
-  for (int line = from; line <= to; ++line) {
-    collect(line, m_v[line], ends);
-  }
-  return ends;
-}
-
-/*!
-  Normal equations of all ends. An end's variance is that of its own residuals or the median of all, whichever
-  is more; an end that would move the edge far beyond what the others want is let go of.
-*/
-template <class Model>
-void Fit<Model>::assemble(const std::vector<End> &ends, Eigen::MatrixXd &H, Eigen::VectorXd &g)
-{
-  std::vector<double> variances, offsets, backgrounds;
-  for (const End &end : ends) {
-    variances.push_back(end.squares / std::max(1, end.pixels - 2));
-  }
-  const double noise = std::max(median(variances), 0.05); // 8 bits round: 1/12, less where all is dark
-  auto lit = [&](size_t i) { return ends[i].amplitude > 0 && ends[i].offsetWeight > 4 * noise; };
-  for (size_t i = 0; i < ends.size(); ++i) {
-    if (lit(i)) {
-      offsets.push_back(std::abs(ends[i].offset));
-      backgrounds.push_back(ends[i].background);
-    }
-  }
-  const double scale = 1.4826 * std::max(median(offsets), 0.02);
-  H = Eigen::MatrixXd::Zero(N, N);
-  g = Eigen::VectorXd::Zero(N);
-  double squares = 0, weights = 0, pixels = 0, chiSquare = 0, members = 0;
-  for (size_t i = 0; i < ends.size(); ++i) {
-    // An end is no outlier for being noisy: its own doubt widens the limit.
-    const double own = std::sqrt(std::max(variances[i], noise) / std::max(ends[i].offsetWeight, 1e-12));
-    const double z = ends[i].offset / (4.685 * std::max(scale, own));
-    if (!lit(i)) {
-      continue;
-    }
-    chiSquare += ends[i].squares;
-    pixels += ends[i].pixels;
-    if (std::abs(z) >= 1) {
-      continue;
-    }
-    const double tukey = (1 - z * z) * (1 - z * z);
-    const double weight = tukey / std::max(variances[i], noise);
-    H += weight * ends[i].H;
-    g += weight * ends[i].g;
-    squares += weight * ends[i].offsetWeight * ends[i].offset * ends[i].offset;
-    weights += weight * ends[i].offsetWeight;
-    members += tukey;
-  }
-  m_residual = weights > 0 ? std::sqrt(squares / weights) : 0;
-  // Ends scatter more than their pixels' noise says where the edge is no Gaussian: the covariance is to say
-  // so, and the fewer they are the less they know of their own scatter.
-  m_inflation = members > N ? std::max(1.0, squares / (members - N)) * (1 + 2 / (members - N)) : 3;
-  m_background = median(backgrounds);
-  m_noise = std::sqrt(noise);
-  m_misfit = pixels > 0 ? chiSquare / pixels : 0;
-  m_pixels = pixels;
-  m_members = members;
-}
-
-/*!
-  Gauss-Newton from the start model. False where the lamp has no edge to fit: no ends that show one, a blur that
-  outgrows any lens, a middle that wanders off or stays unknown.
-*/
-template <class Model>
-bool Fit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations)
-{
-  static const double fewest = 3;     // ends
-  static const double still = 3e-4;   // px
-  static const double sharpest = 0.1; // px of blur; the pixels themselves hide anything sharper
-  Eigen::MatrixXd H;
-  Eigen::VectorXd g;
-  const double radius = m_model.radius();
-  const double widest = 0.15 * radius + 1;
-  const Eigen::Vector2d start = m_model.centre();
-  m_blur = std::clamp(0.03 * radius, 0.7, 4.0);
-  int soft = 0;
-  for (int i = 0; i < maxIterations; ++i) {
-    m_reach = std::clamp(3 * m_blur + 2, 4.0, std::max(4.0, 0.4 * m_model.radius()));
-    assemble(lineEnds(), H, g);
-    soft = m_blur >= widest ? soft + 1 : 0;
-    if (m_members < fewest || soft > 2) {
-      return false;
-    }
-    m_prior = m_model.addPrior(shapeSigma, H, g);
-    H.diagonal().array() += 1e-9;
-    Eigen::VectorXd step = H.ldlt().solve(g);
-    if (!step.allFinite()) {
-      return false;
-    }
-    const double longest = step.head(2).norm();
-    const double limit = 0.15 * radius;
-    if (longest > limit) {
-      step *= limit / longest;
-    }
-    const typename Model::Vector outlineStep =
-        step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
-    m_model.advance(outlineStep);
-    const double blur = m_blur;
-    m_blur = std::clamp(blur + std::clamp(step(N - 1), -0.5 * blur, 0.5 * blur), sharpest, widest);
-    if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
-      return false;
-    }
-    if (outlineStep.cwiseAbs().maxCoeff() < still && std::abs(m_blur - blur) < 10 * still) {
-      break;
-    }
-  }
-  m_covariance = m_inflation * H.inverse();
-  if (!m_covariance.allFinite() || m_covariance.diagonal().minCoeff() < 0) {
-    return false;
-  }
-  const double doubt = std::sqrt(m_model.outline(m_covariance).centreCovariance.trace());
-  return doubt < 0.3 * radius;
-}
-
-template <class Model>
-double Fit<Model>::evenness() const
-{
-  double top, bottom, edges = 0, peaks = 0;
-  m_model.vertical(top, bottom);
-  const int from = std::max(0, static_cast<int>(std::ceil(top)));
-  const int to = std::min(m_lines.rows - 1, static_cast<int>(std::floor(bottom)));
-  for (int line = from; line <= to; ++line) {
-    std::vector<End> ends;
-    collect(line, m_v[line], ends);
-    double first, last;
-    if (ends.empty() || !m_model.stretch(m_v[line], 0, first, last)) {
-      continue;
-    }
-    const unsigned char *row = m_lines[line];
-    const int left = std::max(0, static_cast<int>(first));
-    const int right = std::min(m_lines.cols - 1, static_cast<int>(last) + 1);
-    const double peak = left < right ? *std::max_element(row + left, row + right + 1) : 0.0;
-    for (const End &end : ends) {
-      edges += std::max(0.0, end.amplitude);
-      peaks += std::max(0.0, peak - end.background);
-    }
-  }
-  return peaks > 0 ? edges / peaks : 0;
-}
-
-template <class Model>
-vpOutlineFit Fit<Model>::result() const
-{
-  vpOutlineFit fit;
-  // No lens, sensor or picture format is known better than this.
-  static const double systematic = 0.004; // px
-  fit.outline = m_model.outline(m_covariance);
-  fit.outline.centreCovariance += systematic * systematic * Eigen::Matrix2d::Identity();
-  fit.outline.residual = m_residual;
-  fit.blur = m_blur;
-  fit.background = m_background;
-  fit.noise = m_noise;
-  return fit;
-}
 
 vpLampOutline boxOf(const vpLedRoi &roi)
 {
@@ -391,15 +31,22 @@ vpLampOutline boxOf(const vpLedRoi &roi)
 }
 
 /*!
-  The likelier of the two shapes by chi-square, data and prior together. What thin stripes do not tell apart adds to the
+  The likelier of the two shapes, data and prior together. What thin stripes do not tell apart adds to the
   covariance: the distance of the two middles, by the other shape's probability.
 */
-vpOutlineFit likelier(const Fit<vpEllipseModel> &ellipse, const Fit<vpQuadrilateralModel> &sides)
+vpOutlineFit likelier(const vpEdgeFit<vpEllipseModel> &ellipse, const vpEdgeFit<vpQuadrilateralModel> &sides)
 {
-  static const double commoner = 6; // chi-square: lamps are round unless they clearly are not
-  const double noise = std::max(std::min(ellipse.misfit(), sides.misfit()), 0.05);
+  static const double comparable = 0.5; // share of the ellipse's pixels; on fewer, corners may be anything
+  if (sides.pixels() < comparable * ellipse.pixels()) {
+    return ellipse.result();
+  }
   const double pixels = std::min(ellipse.pixels(), sides.pixels());
-  const double gain = pixels * (ellipse.misfit() - sides.misfit()) / noise + ellipse.prior() - sides.prior() - commoner;
+  static const double least = 0.05; // grey levels^2
+  const double ratio = std::max(ellipse.misfit(), least) / std::max(sides.misfit(), least);
+  // A quadrilateral has more parameters to fit noise with (Schwarz's criterion), whose variance is not known
+  // either.
+  const double penalty = (vpQuadrilateralModel::parameters - vpEllipseModel::parameters) * std::log(pixels);
+  const double gain = pixels * std::log(ratio) + ellipse.prior() - sides.prior() - penalty;
   vpOutlineFit best = gain > 0 ? sides.result() : ellipse.result();
   const vpOutlineFit other = gain > 0 ? ellipse.result() : sides.result();
   const double doubt = 1 / (1 + std::exp(0.5 * std::abs(gain)));
@@ -409,8 +56,8 @@ vpOutlineFit likelier(const Fit<vpEllipseModel> &ellipse, const Fit<vpQuadrilate
 }
 
 /*!
-  Thin stripes far apart show little of an outline: where they make an ellipse longer than lamps are seen, it may be another
-  shape altogether, and the middle lies anywhere along it.
+  Thin stripes far apart show little of an outline: where they make an ellipse longer than lamps are seen, it
+  may be another shape altogether, and the middle lies anywhere along it.
 */
 void addElongationDoubt(vpLampOutline &ellipse, const vpLedRoi &roi, double prior)
 {
@@ -426,8 +73,8 @@ const double softMisfit = 0.15; // share of the radius, root mean square of chor
 const double evenEdge = 0.45;   // evenness below which a lamp glows about a bright core
 
 /*!
-  A lamp that glows about a bright core: its glow, or a housing that it lights, may lie anywhere about it. Its middle is
-  that of its light. Across the lines stripes weigh on it a little.
+  A lamp that glows about a bright core: its glow, or a housing that it lights, may lie anywhere about it. Its
+  middle is that of its light. Across the lines stripes weigh on it a little.
 */
 void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 {
@@ -465,7 +112,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   }
   const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
   const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
-  Fit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start);
+  vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start);
   const bool isEllipse = ellipse.run(roi.box, shapeSigma, maxIterations);
   if (isEllipse) {
     best = ellipse.result();
@@ -473,7 +120,8 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   }
   bool even = isEllipse && ellipse.evenness() > evenEdge;
   if (vpChordShape::rectangleMisfit(ends) <= 3 * ellipseMisfit) {
-    Fit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions, vpQuadrilateralModel::from(ends));
+    vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions,
+                                          vpQuadrilateralModel::from(ends));
     if (sides.run(roi.box, shapeSigma, maxIterations) && sides.evenness() > evenEdge) {
       best = even ? likelier(ellipse, sides) : sides.result();
       even = true;

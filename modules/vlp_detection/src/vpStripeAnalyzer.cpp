@@ -56,8 +56,8 @@ struct Peaks {
 };
 
 /*!
-  Alternating highs and lows, each standing out from the one before by four standard deviations and by three tenths of itself:
-  works alike for stripes of a few grey levels and of two hundred.
+  Alternating highs and lows, each standing out from the one before by four standard deviations and by three
+  tenths of itself: works alike for stripes of a few grey levels and of two hundred.
 */
 Peaks findPeaks(const vpStripeProfile &profile)
 {
@@ -133,10 +133,11 @@ struct Candidate {
 };
 
 /*!
-  Least-squares periodogram of the profile with its envelope divided out: at each frequency a sinusoid beside a level and a
-  slope. Local maxima, the best first.
+  Least-squares periodogram of the profile with its envelope divided out: at each frequency a sinusoid beside
+  a level and a slope. Local maxima, the best first.
 */
-std::vector<Candidate> periodogram(const vpStripeProfile &profile, const Eigen::VectorXd &envelope, double modelError)
+std::vector<Candidate> periodogram(const vpStripeProfile &profile, const Eigen::VectorXd &envelope,
+                                   double modelError)
 {
   const auto n = static_cast<Eigen::Index>(profile.light.size());
   const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
@@ -180,11 +181,13 @@ std::vector<Candidate> periodogram(const vpStripeProfile &profile, const Eigen::
   }
   std::vector<Candidate> maxima;
   for (size_t i = 0; i < all.size(); ++i) {
-    if ((i == 0 || all[i].gain >= all[i - 1].gain) && (i + 1 == all.size() || all[i].gain > all[i + 1].gain)) {
+    if ((i == 0 || all[i].gain >= all[i - 1].gain) &&
+        (i + 1 == all.size() || all[i].gain > all[i + 1].gain)) {
       maxima.push_back(all[i]);
     }
   }
-  std::sort(maxima.begin(), maxima.end(), [](const Candidate &a, const Candidate &b) { return a.gain > b.gain; });
+  std::sort(maxima.begin(), maxima.end(),
+            [](const Candidate &a, const Candidate &b) { return a.gain > b.gain; });
   return maxima;
 }
 
@@ -202,7 +205,8 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const std::v
   std::optional<vpWaveformFit> best;
   for (const Candidate &candidate : candidates) {
     std::vector<double> exposures{profile.exposure};
-    static const double longExposure = 0.3; // periods: it may be misstated, and from there no way leads to sharp stripes
+    static const double longExposure =
+        0.3; // periods: it may be misstated, and from there no way leads to sharp stripes
     if (profile.exposure * candidate.frequency > longExposure) {
       exposures.push_back(0.1 / candidate.frequency);
     }
@@ -220,7 +224,8 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const std::v
   return best;
 }
 
-std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, const std::vector<Candidate> &candidates,
+std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
+                                         const std::vector<Candidate> &candidates,
                                          vpWaveformFit::Settings settings, const Eigen::VectorXd &envelope)
 {
   settings.twoPulse = true;
@@ -263,7 +268,7 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
 } // namespace
 
 vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
-                                       const vpOutlineFit &fit)
+                                       const vpOutlineFit &fit, const vpLedRoi &roi)
 {
   const vpLampOutline &outline = fit.outline;
   const bool soft = outline.shape == vpLampOutline::Shape::region || fit.blur > 0.1 * outline.diameter() / 2;
@@ -272,8 +277,12 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   const Eigen::Vector4d box = outline.box();
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
-  const int from = std::max(0, static_cast<int>(std::ceil(box(1) + margin)));
-  const int to = std::min(lines.rows - 1, static_cast<int>(std::floor(box(3) - margin)));
+  const bool sidesHidden = outline.shape != vpLampOutline::Shape::ellipse; // those along the lines
+  const double top = sidesHidden ? std::max<double>(roi.box.y, box(1)) : std::max(0.0, box(1));
+  const double bottom =
+      sidesHidden ? std::min<double>(roi.box.br().y - 1, box(3)) : std::min(lines.rows - 1.0, box(3));
+  const int from = static_cast<int>(std::ceil(top + margin));
+  const int to = static_cast<int>(std::floor(bottom - margin));
   const double noise = std::max(fit.noise, 0.3);
   for (int line = from; line <= to; ++line) {
     double first, last;
@@ -325,7 +334,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
       std::clamp(static_cast<int>(peaks.line.size()) - 1, 0, brightest > evenEmitter * dimmest ? 4 : 2);
   const Eigen::VectorXd envelope = envelopeThroughPeaks(profile, peaks, settings.envelopeOrder);
   std::vector<Candidate> candidates = periodogram(profile, envelope, modelError);
-  if (candidates.empty() || candidates.front().gain < minSignificance || features.modulation < minModulation) {
+  if (candidates.empty() || candidates.front().gain < minSignificance ||
+      features.modulation < minModulation) {
     return features;
   }
   candidates.resize(std::min<size_t>(candidates.size(), 3));

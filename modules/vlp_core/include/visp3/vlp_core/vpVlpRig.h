@@ -28,8 +28,8 @@ struct VISP_EXPORT vpVlpRig {
   vpHomogeneousMatrix bMc;                                    // camera in the robot base frame
   Eigen::Vector3d translationSigma = Eigen::Vector3d::Zero(); // m
   /*!
-    rad, standard deviations: x and y of how far the robot, base and camera rigid together, leans from the vertical about
-    the axes x and y of b; z of the camera's heading on the base.
+    rad, standard deviations: x and y of how far the robot, base and camera rigid together, leans from the
+    vertical about the axes x and y of b; z of the camera's heading on the base.
   */
   Eigen::Vector3d rotationSigma = Eigen::Vector3d::Zero();
 

@@ -25,12 +25,12 @@ BEGIN_VISP_NAMESPACE
 class VISP_EXPORT vpLedIdRecognizer
 {
 public:
-  double gate = 4;              // standard deviations, on each feature and on all together
-  double minConfidence = 0.95;  // probability below which no id is given
+  double gate = 4;                // standard deviations, on each feature and on all together
+  double minConfidence = 0.95;    // probability below which no id is given
   double maxFrequencyDoubt = 0.1; // share of the frequency: less certain stripes are recognised as nothing
-  double dutyError = 0.03;      // systematic error of a measured duty, standard deviation
-  double phaseError = 0.01;     // of a measured phase difference, periods
-  double unknownPrior = 0.01;   // prior probability that a blinking region is none of the map's lamps
+  double dutyError = 0.03;        // systematic error of a measured duty, standard deviation
+  double phaseError = 0.01;       // of a measured phase difference, periods
+  double unknownPrior = 0.01;     // prior probability that a blinking region is none of the map's lamps
 
   vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutter &shutter);
 

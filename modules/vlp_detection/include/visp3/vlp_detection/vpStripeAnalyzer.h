@@ -22,30 +22,34 @@ struct VISP_EXPORT vpStripeProfile {
   double exposure = 0;       // s, of each line, averaging by a resize included
 
   /*!
-    Profile inside an outline (in samples and lines, as the fitter gives it). Of a lamp with a soft edge only the middle
-    strip counts, where its glow is even.
+    Profile inside an outline (in samples and lines, as the fitter gives it). A quadrilateral's sides along
+    the lines are hardly seen: its lines beyond the first and last lit one of \e roi may be dark stripes or no
+    lamp at all, and stay out. Of a lamp with a soft edge only the middle strip counts, where its glow is
+    even.
   */
-  static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing, const vpOutlineFit &fit);
+  static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
+                               const vpOutlineFit &fit, const vpLedRoi &roi);
 };
 
 /*!
   What the stripes say: maximum likelihood over the line profile.
 
-  A lamp's light on the line exposed about t is o + exp(c_0 + c_1 y + ...) S(t): the waveform averaged over the exposure, which
-  weighs harmonic k by sinc(k f T_e), times the emitter's envelope along the lines, a polynomial in its logarithm. A
-  periodogram gives the starts; Gauss-Newton then fits frequency, phase, duty, exposure, offset and envelope together. The
-  exposure has the rig's value as prior, since blur and a phone's tone curve soften the edges as well. The variance of a line is
-  that of its pixels plus a share of its light, for all that the model leaves out.
+  A lamp's light on the line exposed about t is o + exp(c_0 + c_1 y + ...) S(t): the waveform averaged over
+  the exposure, which weighs harmonic k by sinc(k f T_e), times the emitter's envelope along the lines, a
+  polynomial in its logarithm. A periodogram gives the starts; Gauss-Newton then fits frequency, phase, duty,
+  exposure, offset and envelope together. The exposure has the rig's value as prior, since blur and a phone's
+  tone curve soften the edges as well. The variance of a line is that of its pixels plus a share of its light,
+  for all that the model leaves out.
 */
 class VISP_EXPORT vpStripeAnalyzer
 {
 public:
-  double modelError = 0.03;          // share of a line's light that the model may be off by, standard deviation
-  double exposureTolerance = 0.5;    // standard deviation of the exposure about the rig's, as a share of it
-  double maxMisfit = 0.2;            // share of the stripes' power that a pwm or twoPulse lamp may leave unexplained
-  double minModulation = 0.05;       // depth of stripes below which a lamp counts as unmodulated
-  bool searchTwoPulses = true;       // off where no lamp of the map is one: a search of tens of milliseconds
-  double minSignificance = 30;       // gain in chi-square by which a sinusoid has to beat a plain lamp
+  double modelError = 0.03;       // share of a line's light that the model may be off by, standard deviation
+  double exposureTolerance = 0.5; // standard deviation of the exposure about the rig's, as a share of it
+  double maxMisfit = 0.2; // share of the stripes' power that a pwm or twoPulse lamp may leave unexplained
+  double minModulation = 0.05; // depth of stripes below which a lamp counts as unmodulated
+  bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
+  double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
 
   //! Signal, frequency, duty, phase difference, stripes, modulation, misfit; area is left to the caller.
   vpStripeFeatures analyze(const vpStripeProfile &profile) const;

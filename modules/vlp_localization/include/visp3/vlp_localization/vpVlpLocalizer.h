@@ -16,8 +16,8 @@ BEGIN_VISP_NAMESPACE
 
 //! What one frame gave.
 struct VISP_EXPORT vpVlpLocation {
-  double timestamp = 0; // s, of the frame
-  vpVlpFix fix;         // fix.valid false and fix.refusal where there is no position
+  double timestamp = 0;                        // s, of the frame
+  vpVlpFix fix;                                // fix.valid false and fix.refusal where there is no position
   std::vector<vpLampObservation> observations; // every lamp-like region, accepted where it counts for the fix
 };
 
@@ -36,14 +36,14 @@ public:
   vpLedDetector detector;
   vpManyLampSolver manyLamps; // its attitude: mount or free
   vpTwoLampSolver twoLamps;
-  double mapTolerance = 0.03;      // m, how far lamps may hang from where the map says before they disagree, sigma
+  double mapTolerance = 0.03; // m, how far lamps may hang from where the map says before they disagree, sigma
   double outlierLikelihood = 1e-4; // lamps disagree where their residuals are less likely than this
 
   vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map);
 
   /*!
-    \throw vpException (dimensionError) where the picture has not the size that the rig states. Whatever else is
-    in a picture leads to a position or to a refusal.
+    \throw vpException (dimensionError) where the picture has not the size that the rig states. Whatever else
+    is in a picture leads to a position or to a refusal.
   */
   vpVlpLocation process(const vpVlpFrame &frame);
 
