@@ -126,7 +126,8 @@ TEST(PictureResize, CameraOfTheDeliveredPictureSeesTheSamePoints)
       const vpPictureResize rule = resize(method, 2048, 1536);
       const vpCameraParameters camera = rule.delivered(sensor, 800, 600);
       EXPECT_EQ(camera.get_projModel(), sensor.get_projModel());
-      double scaleU, offsetU, scaleV, offsetV, u, v, sensorU, sensorV;
+      double scaleU, offsetU, scaleV, offsetV;
+      double u = 0, v = 0, sensorU = 0, sensorV = 0;
       rule.sensorAxis(800, 2048, scaleU, offsetU);
       rule.sensorAxis(600, 1536, scaleV, offsetV);
       for (const double x : {-0.4, 0.0, 0.3}) {

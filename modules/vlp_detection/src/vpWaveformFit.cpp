@@ -252,13 +252,10 @@ bool vpWaveformFit::preferStatedExposure()
   if (exposed > wholePeriod) {
     exposed = 0.5; // no pulse, only a start for one
   }
-  Eigen::VectorXd swapped = m_x;
-  swapped(duty) = exposed;
-  swapped(waveformParameters) +=
-      std::log(std::min(1.0, m_x(duty) / exposed)) - std::log(std::min(1.0, exposed / m_x(duty)));
+  Eigen::VectorXd envelope = m_x.tail(m_x.size() - waveformParameters);
+  envelope(0) += std::log(std::min(1.0, m_x(duty) / exposed)) - std::log(std::min(1.0, exposed / m_x(duty)));
   // The pulse's middle stays.
-  return run(m_x(frequency), m_x(phase) + 0.5 * (exposed - m_x(duty)), exposed, 0,
-             Eigen::VectorXd(swapped.tail(m_x.size() - waveformParameters)), pulse);
+  return run(m_x(frequency), m_x(phase) + 0.5 * (exposed - m_x(duty)), exposed, 0, envelope, pulse);
 }
 
 int vpWaveformFit::degreesOfFreedom() const

@@ -48,7 +48,6 @@ public:
   int degreesOfFreedom() const;
   //! Share of the stripes' power left unexplained, beyond what noise explains.
   double misfit() const;
-  Eigen::VectorXd envelope() const { return m_x.tail(m_x.size() - waveformParameters); }
 
   //! Light of a lamp at phase \e x (periods), averaged over \e width periods about it.
   static double waveform(double x, double width, double duty);

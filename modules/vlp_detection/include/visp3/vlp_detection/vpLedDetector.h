@@ -50,7 +50,7 @@ public:
   */
   bool detect(const vpImage<unsigned char> &I) override;
 
-  //! Every lamp-like region of the last picture, the largest first.
+  //! Every lamp-like region of the last picture, the one with the largest lit area first.
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
 private:

@@ -43,7 +43,7 @@ struct VISP_EXPORT vpLedRoi {
   double level = 0;       // grey value that its pixels exceed
   double lampness = 0;    // 0 to 1: how much the chords look like one whole lamp
   bool cutAcross = false; // touches the first or last sample
-  bool cutAlong = false;  // touches the first or last line
+  bool cutAlong = false;  // touches the first or last line, or may go on beyond it after a dark stripe
 };
 
 /*!
@@ -51,10 +51,12 @@ struct VISP_EXPORT vpLedRoi {
 
   Grey levels rise in a geometric series from the picture's own noise floor. At each level the pixels above it
   form stripes (connected regions), and stripes that face each other across a dark gap form groups: lamps,
-  where dark stripes cut them into pieces. Groups of neighbouring levels nest into a tree. From the tree come
-  the regions whose chords look most like one whole lamp: convex, on an ellipse or a quadrilateral, with a
-  sharp edge. So a dim lamp beside a bright one and lamps joined by their halos all get the level that suits
-  them.
+  where dark stripes cut them into pieces. A lamp is convex: a group with a waist is cut there where its parts
+  make better lamps. Groups of neighbouring levels nest into a tree. From the tree come the regions whose
+  light falls off at their ends by more than noise would, and whose chords look most like one whole lamp:
+  convex, on an ellipse or a quadrilateral, with a sharp edge. So a dim lamp beside a bright one and lamps
+  joined by their halos all get the level that suits them. Crumbs of a halo and pieces of a larger choice are
+  left out at the end.
 */
 class VISP_EXPORT vpLedRoiDetector
 {

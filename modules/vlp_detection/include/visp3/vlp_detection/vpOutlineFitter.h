@@ -26,13 +26,17 @@ struct VISP_EXPORT vpOutlineFit {
   Fits a lamp's outline to the pixels about its edge, to sub-pixel accuracy and without bias from the stripes.
 
   A rolling shutter multiplies each line of the lamp's blurred picture by what the lamp gave during that
-  line's exposure: I(u, v) = b + a D(u, v) on line v, where D is 1 inside the outline, 0 outside and a
-  Gaussian edge between. Left and right end of each line have their own a and b, whatever the lamp's waveform,
-  an uneven emitter or a halo make them; these are eliminated from the least squares in closed form (variable
-  projection, Golub and Pereyra 1973, with Kaufman's approximation of the Jacobian). What is left is the
-  outline and the blur, by Gauss-Newton with weights that let go of ends that do not fit (Tukey's biweight on
-  each end's distance from the outline). Where the stripes leave the ellipse open, a weak prior (axes equal
-  within `shapeSigma`) closes it, and the covariance says so.
+  line's exposure: I(u, v) = b + a D(u, v) on line v, where D is 1 inside the outline, 0 outside and between
+  them a Gaussian edge integrated over each pixel's square. Left and right end of each line have their own a
+  and b, whatever the lamp's waveform, an uneven emitter or a halo make them; these are eliminated from the
+  least squares in closed form (variable projection, Golub and Pereyra 1973, with Kaufman's approximation of
+  the Jacobian). What is left is the outline and the blur, by Gauss-Newton with weights that let go of ends
+  that do not fit (Tukey's biweight on each end's distance from the outline). Where the stripes leave the
+  ellipse open, a weak prior (axes equal within `shapeSigma`) closes it, and the covariance says so.
+
+  Ellipse and quadrilateral compete by likelihood (Schwarz 1978); what the stripes do not tell apart adds to
+  the covariance. A lamp with no edge to fit, since it glows about a bright core or a lens blurs it, is placed
+  on the middle of its light, with a covariance that is a share of its size.
 */
 class VISP_EXPORT vpOutlineFitter
 {
@@ -43,7 +47,7 @@ public:
   /*!
     \param lines The picture as read out. \param linePositions, samplePositions True positions of its lines
     and samples (vpLineTiming), pixels. \param roi Where the lamp is. \return The ellipse or quadrilateral
-    that fits better; a region where neither does.
+    that is likelier; a region where neither fits.
   */
   vpOutlineFit fit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
                    const std::vector<double> &samplePositions, const vpLedRoi &roi) const;
