@@ -33,6 +33,24 @@ double sumOfPixels(double x)
   const double whole = std::floor(x);
   return whole * (whole - 1) / 2 + (x - whole) * whole;
 }
+
+//! A camera with other axes and the distortion of \e camera.
+vpCameraParameters withAxes(vpCameraParameters camera, double px, double py, double u0, double v0)
+{
+  switch (camera.get_projModel()) {
+  case vpCameraParameters::perspectiveProjWithoutDistortion:
+    camera.initPersProjWithoutDistortion(px, py, u0, v0);
+    break;
+  case vpCameraParameters::perspectiveProjWithDistortion:
+    camera.initPersProjWithDistortion(px, py, u0, v0, camera.get_kud(), camera.get_kdu());
+    break;
+  case vpCameraParameters::ProjWithKannalaBrandtDistortion:
+    camera.initProjWithKannalaBrandtDistortion(px, py, u0, v0,
+                                               camera.getKannalaBrandtDistortionCoefficients());
+    break;
+  }
+  return camera;
+}
 } // namespace
 
 double vpPictureResize::sensorPosition(unsigned int k, unsigned int delivered, unsigned int source) const
@@ -82,25 +100,18 @@ vpCameraParameters vpPictureResize::delivered(const vpCameraParameters &sensor, 
   double scaleU, offsetU, scaleV, offsetV;
   sensorAxis(width, sourceWidth, scaleU, offsetU);
   sensorAxis(height, sourceHeight, scaleV, offsetV);
-  const double px = sensor.get_px() / scaleU;
-  const double py = sensor.get_py() / scaleV;
-  const double u0 = (sensor.get_u0() - offsetU) / scaleU;
-  const double v0 = (sensor.get_v0() - offsetV) / scaleV;
+  return withAxes(sensor, sensor.get_px() / scaleU, sensor.get_py() / scaleV,
+                  (sensor.get_u0() - offsetU) / scaleU, (sensor.get_v0() - offsetV) / scaleV);
+}
 
-  vpCameraParameters camera;
-  switch (sensor.get_projModel()) {
-  case vpCameraParameters::perspectiveProjWithoutDistortion:
-    camera.initPersProjWithoutDistortion(px, py, u0, v0);
-    break;
-  case vpCameraParameters::perspectiveProjWithDistortion:
-    camera.initPersProjWithDistortion(px, py, u0, v0, sensor.get_kud(), sensor.get_kdu());
-    break;
-  case vpCameraParameters::ProjWithKannalaBrandtDistortion:
-    camera.initProjWithKannalaBrandtDistortion(px, py, u0, v0,
-                                               sensor.getKannalaBrandtDistortionCoefficients());
-    break;
-  }
-  return camera;
+vpCameraParameters vpPictureResize::sensor(const vpCameraParameters &delivered, unsigned int width,
+                                           unsigned int height) const
+{
+  double scaleU, offsetU, scaleV, offsetV;
+  sensorAxis(width, sourceWidth, scaleU, offsetU);
+  sensorAxis(height, sourceHeight, scaleV, offsetV);
+  return withAxes(delivered, delivered.get_px() * scaleU, delivered.get_py() * scaleV,
+                  delivered.get_u0() * scaleU + offsetU, delivered.get_v0() * scaleV + offsetV);
 }
 
 vpLineTiming::vpLineTiming(const vpRollingShutter &shutter, const vpPictureResize &resize, unsigned int width,

@@ -9,54 +9,12 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <visp3/vlp_core/vpPixelEdge.h>
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-
-//! Share of a pixel's light, and its derivatives by an outward shift of the edge and by the blur.
-struct Edge {
-  double share;
-  double byShift;
-  double byBlur;
-};
-
-/*!
-  A pixel whose middle lies \e d outside a straight edge of normal \e n and Gaussian spread \e blur.
-  Integrating over the pixel's square adds a box of width |n_x| and one of width |n_y| to the Gaussian: the
-  share is the second difference of the Gaussian's integral taken twice more. From a blur of half a pixel on,
-  a Gaussian of the same variance does as well.
-*/
-Edge edgeAt(double d, const Eigen::Vector2d &n, double blur)
-{
-  static const double boxes = 1.0 / 12; // px^2, variance of both
-  auto phi = [](double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); };
-  auto below = [](double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); };
-  static const double wide = 0.5;
-  const double spread = std::sqrt(blur * blur + boxes);
-  if (blur > wide || std::abs(d) > 1 + 4 * spread) {
-    const double z = -d / spread;
-    return {below(z), phi(z) / spread, -z * phi(z) * blur / (spread * spread)};
-  }
-  const double p = std::max(0.5 * std::abs(n.x()), 0.02);
-  const double q = std::max(0.5 * std::abs(n.y()), 0.02);
-  const double shift[4] = {p + q, p - q, q - p, -p - q};
-  static const double sign[4] = {1, -1, -1, 1};
-  Edge edge{0, 0, 0};
-  for (int i = 0; i < 4; ++i) {
-    const double z = (shift[i] - d) / blur;
-    const double once = z * below(z) + phi(z);
-    edge.share += sign[i] * 0.5 * (z * once + below(z));
-    edge.byShift += sign[i] * once;
-    edge.byBlur += sign[i] * below(z);
-  }
-  const double area = 4 * p * q;
-  edge.share *= blur * blur / area;
-  edge.byShift *= blur / area;
-  edge.byBlur *= blur / area; // heat equation: d/d blur = blur d^2/d shift^2
-  return edge;
-}
 
 double median(std::vector<double> values)
 {
@@ -90,7 +48,7 @@ std::optional<typename vpEdgeFit<Model>::End> vpEdgeFit<Model>::lineEnd(int line
     typename Model::Vector derivative;
     Eigen::Vector2d normal;
     const double d = m_model.distance({m_u[from + i], m_v[line]}, derivative, normal);
-    const Edge edge = edgeAt(d, normal, m_blur);
+    const vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur);
     D(i) = edge.share;
     J.row(i) << -edge.byShift * derivative.transpose(), edge.byBlur;
     I(i) = row[from + i];

@@ -56,6 +56,9 @@ struct VISP_EXPORT vpPictureResize {
   */
   vpCameraParameters delivered(const vpCameraParameters &sensor, unsigned int width,
                                unsigned int height) const;
+  //! The way back: those of the sensor's full picture from those of the picture as delivered.
+  vpCameraParameters sensor(const vpCameraParameters &delivered, unsigned int width,
+                            unsigned int height) const;
 };
 
 /*!

@@ -1,0 +1,42 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_core/vpPixelEdge.h>
+
+#include <algorithm>
+#include <cmath>
+
+BEGIN_VISP_NAMESPACE
+
+vpPixelEdge vpPixelEdge::at(double d, const Eigen::Vector2d &normal, double blur, double exactUpTo)
+{
+  static const double boxes = 1.0 / 12; // px^2, variance of both, whatever the normal
+  auto phi = [](double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); };
+  auto below = [](double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); };
+  const double spread = std::sqrt(blur * blur + boxes);
+  if (blur > exactUpTo || std::abs(d) > 1 + 4 * spread) {
+    const double z = -d / spread;
+    return {below(z), phi(z) / spread, -z * phi(z) * blur / (spread * spread)};
+  }
+  static const double narrowest = 0.02; // px; a narrower box would cancel digits and change nothing
+  const double p = std::max(0.5 * std::abs(normal.x()), narrowest);
+  const double q = std::max(0.5 * std::abs(normal.y()), narrowest);
+  const double shift[4] = {p + q, p - q, q - p, -p - q};
+  static const double sign[4] = {1, -1, -1, 1};
+  vpPixelEdge edge{0, 0, 0};
+  for (int i = 0; i < 4; ++i) {
+    const double z = (shift[i] - d) / blur;
+    const double once = z * below(z) + phi(z);
+    edge.share += sign[i] * 0.5 * (z * once + below(z));
+    edge.byShift += sign[i] * once;
+    edge.byBlur += sign[i] * below(z);
+  }
+  const double area = 4 * p * q;
+  edge.share *= blur * blur / area;
+  edge.byShift *= blur / area;
+  edge.byBlur *= blur / area; // heat equation: d/d blur = blur d^2/d shift^2
+  return edge;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,108 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpEmitterView_h
+#define vpEmitterView_h
+
+#include <Eigen/Core>
+#include <visp3/core/vpHomogeneousMatrix.h>
+#include <visp3/vlp_core/vpPixelEdge.h>
+#include <visp3/vlp_simulation/vpSimulatedScene.h>
+
+#include "vpSensorGrid.h"
+
+BEGIN_VISP_NAMESPACE
+
+//! A flat shape that shines: a lamp or a window.
+struct vpEmitter {
+  Eigen::Vector3d centre;
+  Eigen::Vector3d x, y;        // unit vectors in its plane
+  double halfX = 0, halfY = 0; // m; of a disc its radius
+  bool disc = true;
+  bool lamp = true;    // shines downwards only; glows on the ceiling and in the lens
+  double level = 0;    // grey value
+  double rim = 0;      // share
+  double exponent = 0; // m - 1 of a light that falls with cos^m off its axis
+  const vpLampLight *light = nullptr;
+
+  explicit vpEmitter(const vpSimulatedLamp &lamp);
+  explicit vpEmitter(const vpSimulatedWindow &window);
+
+  double reach() const { return disc ? halfX : std::hypot(halfX, halfY); }
+};
+
+//! An emitter seen from one pose of the camera.
+class vpEmitterView
+{
+public:
+  vpEmitterView(const vpEmitter &emitter, const vpHomogeneousMatrix &wMc);
+
+  //! Coordinates in the emitter's plane (m) of what the ray sees of it. \return False where it sees nothing of that plane.
+  bool at(const Eigen::Vector2d &ray, Eigen::Vector2d &inPlane) const
+  {
+    const Eigen::Vector3d r(ray.x(), ray.y(), 1);
+    const double depth = m_height / m_normal.dot(r); // along the camera's z
+    inPlane = m_foot + depth * Eigen::Vector2d(m_x.dot(r), m_y.dot(r));
+    return depth > 0 && depth < farthest;
+  }
+
+  //! Whether the emitter shows the camera its bright side.
+  bool visible() const { return m_visible; }
+
+  //! cos of the angle between the ray and the emitter's normal.
+  double cosine(const Eigen::Vector2d &ray) const
+  {
+    return std::abs(m_normal.dot(Eigen::Vector3d(ray.x(), ray.y(), 1))) / std::sqrt(ray.squaredNorm() + 1);
+  }
+
+  //! Point of the emitter's plane, in the camera frame.
+  Eigen::Vector3d inCamera(const Eigen::Vector2d &inPlane) const
+  {
+    return m_centre + inPlane.x() * m_x + inPlane.y() * m_y;
+  }
+
+private:
+  static constexpr double farthest = 1e4; // m
+
+  Eigen::Vector3d m_centre, m_x, m_y, m_normal; // in the camera frame
+  Eigen::Vector2d m_foot;                       // the camera's place in the emitter's coordinates, m
+  double m_height = 0;                          // m, of the emitter's plane along its normal
+  bool m_visible = true;
+};
+
+/*!
+  Share of a pixel's square that the blurred shape covers, times its own brightness there (1 in its middle).
+  \e middle is the pixel's ray, \e inPlane what it sees.
+*/
+class vpEmitterShare
+{
+public:
+  vpEmitterShare(const vpSensorGrid &grid, double blur) : m_grid(grid), m_blur(std::max(blur, sharpest)) {}
+
+  //! px, from the edge, beyond which a pixel is covered wholly or not at all.
+  double band() const { return 5 * m_blur + 1.5; }
+
+  double at(const vpEmitter &emitter, const vpEmitterView &view, const Eigen::Vector2d &pixel,
+            const Eigen::Vector2d &inPlane) const;
+
+private:
+  static constexpr double sharpest = 0.02; // px of blur; nothing shows any less
+  static constexpr double exact = 2;       // px of blur up to which the pixel's square is integrated as it is
+
+  //! Plane coordinates seen half a pixel to either side, in u and v.
+  struct Neighbours {
+    Eigen::Vector2d right, left, down, up;
+  };
+  Neighbours around(const vpEmitterView &view, const Eigen::Vector2d &pixel) const;
+  vpPixelEdge acrossBend(double d, const Eigen::Vector2d &normal, double bend, double spread) const;
+  double disc(const vpEmitter &emitter, const Eigen::Vector2d &inPlane, const Neighbours &near) const;
+  double rectangle(const vpEmitter &emitter, const Eigen::Vector2d &inPlane, const Neighbours &near) const;
+
+  const vpSensorGrid &m_grid;
+  double m_blur;
+};
+
+END_VISP_NAMESPACE
+
+#endif

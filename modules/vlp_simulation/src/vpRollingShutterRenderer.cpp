@@ -1,0 +1,284 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+#include "vpEmitterView.h"
+#include "vpScatteredLight.h"
+#include "vpSensorGrid.h"
+#include "vpSilhouette.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+void expect(bool good, const char *field, double came, const char *expected)
+{
+  if (!good) {
+    throw vpException(vpException::badValue,
+                      std::string("simulated camera: ") + field + ": " + vpNumberText(came) + ", expected " + expected);
+  }
+}
+
+const vpSimulatedCamera &checked(const vpSimulatedCamera &camera)
+{
+  const char *const notNegative = "a number of 0 or more";
+  const char *const positive = "a number above 0";
+  expect(camera.rig.width > 0, "picture width", camera.rig.width, positive);
+  expect(camera.rig.height > 0, "picture height", camera.rig.height, positive);
+  expect(camera.rig.shutter.exposure > 0, "exposure, s", camera.rig.shutter.exposure, positive);
+  expect(camera.rig.shutter.rowTime > 0, "row time, s", camera.rig.shutter.rowTime, positive);
+  expect(camera.blur >= 0, "blur, px", camera.blur, notNegative);
+  expect(camera.haloShare >= 0 && camera.haloShare <= 1, "halo share", camera.haloShare, "0 to 1");
+  expect(camera.haloShare == 0 || camera.haloRadius >= 2, "halo radius, px", camera.haloRadius, "2 or more");
+  expect(camera.vignetting >= 0, "vignetting", camera.vignetting, notNegative);
+  expect(camera.readNoise >= 0, "read noise, grey levels", camera.readNoise, notNegative);
+  expect(camera.photonsPerLevel >= 0, "photons per grey level", camera.photonsPerLevel, notNegative);
+  return camera;
+}
+
+cv::Mat_<float> vignette(const vpSensorGrid &grid, double exponent)
+{
+  cv::Mat_<float> share(grid.lines(), grid.samples(), 1.f);
+  for (int line = 0; exponent > 0 && line < share.rows; ++line) {
+    for (int sample = 0; sample < share.cols; ++sample) {
+      // cos of the angle off the axis is 1 / sqrt(1 + x^2 + y^2)
+      share(line, sample) = static_cast<float>(std::pow(1 + grid.ray(line, sample).squaredNorm(), -0.5 * exponent));
+    }
+  }
+  return share;
+}
+
+//! The part of the grid that the emitter may be seen in.
+cv::Rect boxOf(const vpEmitter &emitter, const std::vector<vpHomogeneousMatrix> &wMc, const vpSensorGrid &grid,
+               double margin)
+{
+  Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9);
+  for (const vpHomogeneousMatrix &pose : wMc) {
+    const vpEmitterView view(emitter, pose);
+    if (!view.visible()) {
+      continue;
+    }
+    static const int corners = 16; // of a polygon about the disc
+    const double reach = emitter.reach() / std::cos(M_PI / corners);
+    for (int k = 0; k < corners; ++k) {
+      const double angle = 2 * M_PI * k / corners;
+      const Eigen::Vector3d point = view.inCamera(reach * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      Eigen::Vector2d pixel;
+      if (!grid.project(point, pixel)) {
+        return grid.whole(); // a part of it is beside or behind the camera
+      }
+      least = least.cwiseMin(pixel);
+      most = most.cwiseMax(pixel);
+    }
+  }
+  const Eigen::Vector2d wider(margin, margin);
+  return grid.within(least - wider, most + wider);
+}
+} // namespace
+
+struct vpRollingShutterRenderer::Impl {
+  explicit Impl(const vpSimulatedCamera &given)
+      : camera(given), grid(given.rig), share(grid, given.blur), scattered(grid, given),
+        vignetting(vignette(grid, given.vignetting)), noiseOfLevel(256)
+  {
+    for (size_t level = 0; level < noiseOfLevel.size(); ++level) {
+      const double photons = given.photonsPerLevel > 0 ? static_cast<double>(level) / given.photonsPerLevel : 0;
+      noiseOfLevel[level] = static_cast<float>(std::sqrt(given.readNoise * given.readNoise + photons));
+    }
+  }
+
+  cv::Mat_<float> light(const vpSimulatedScene &scene, const Poses &wMc, double timestamp) const;
+  void paint(const vpEmitter &emitter, const cv::Rect &box, const Poses &wMc, double timestamp,
+             cv::Mat_<float> &light) const;
+  void addScattered(const std::vector<vpScatteredLight::Lamp> &lamps, double timestamp, cv::Mat_<float> &light) const;
+  cv::Mat_<unsigned char> digitised(const cv::Mat_<float> &light, std::uint64_t seed) const;
+  cv::Mat delivered(const cv::Mat &linesAndSamples) const;
+
+  double middle(int line, double timestamp) const
+  {
+    return timestamp + grid.start(line) + 0.5 * grid.exposure();
+  }
+
+  vpSimulatedCamera camera;
+  vpSensorGrid grid;
+  vpEmitterShare share;
+  vpScatteredLight scattered;
+  cv::Mat_<float> vignetting;
+  std::vector<float> noiseOfLevel; // grey levels
+};
+
+//! Adds what comes straight from the emitter.
+void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::Rect &box, const Poses &wMc,
+                                           double timestamp, cv::Mat_<float> &light) const
+{
+  for (int line = box.y; line < box.br().y; ++line) {
+    const double start = timestamp + grid.start(line);
+    const vpLampLight::Exposed exposed = emitter.light->over(start, start + grid.exposure());
+    if (exposed.share <= 0) {
+      continue;
+    }
+    const vpEmitterView view(emitter, wMc(exposed.middle));
+    if (!view.visible()) {
+      continue;
+    }
+    // m: what is nearer to the outline than this gets its exact share; pixels are no larger anywhere in the lamp.
+    Eigen::Vector2d first, last;
+    const int edges[2] = {box.x, box.br().x - 1};
+    const bool seen = view.at(grid.ray(line, edges[0]), first) && view.at(grid.ray(line, edges[1]), last);
+    const double span = (grid.pixel(line, edges[1]) - grid.pixel(line, edges[0])).norm();
+    const double band = seen && span > 0 ? 1.5 * share.band() * (last - first).norm() / span : 1e9;
+    float *row = light[line];
+    for (int sample = box.x; sample < box.br().x; ++sample) {
+      const Eigen::Vector2d ray = grid.ray(line, sample);
+      Eigen::Vector2d at;
+      if (!view.at(ray, at)) {
+        continue;
+      }
+      const Eigen::Vector2d beyond = at.cwiseAbs() - Eigen::Vector2d(emitter.halfX, emitter.halfY);
+      const double outside = emitter.disc ? at.norm() - emitter.halfX : beyond.maxCoeff();
+      if (outside > band) {
+        continue;
+      }
+      double covered = 1;
+      if (outside > -band) {
+        covered = share.at(emitter, view, grid.pixel(line, sample), at);
+      } else if (emitter.rim > 0) {
+        covered -= emitter.rim * at.squaredNorm() / (emitter.halfX * emitter.halfX);
+      }
+      if (emitter.exponent != 0) {
+        covered *= std::pow(view.cosine(ray), emitter.exponent);
+      }
+      row[sample] += static_cast<float>(emitter.level * exposed.share * covered);
+    }
+  }
+}
+
+void vpRollingShutterRenderer::Impl::addScattered(const std::vector<vpScatteredLight::Lamp> &lamps, double timestamp,
+                                                  cv::Mat_<float> &light) const
+{
+  if (lamps.empty()) {
+    return;
+  }
+  const vpNodeGrid &nodes = scattered.nodes();
+  std::vector<float> sum(nodes.samples.size());
+  for (int line = 0; line < light.rows; ++line) {
+    float way;
+    const int above = nodes.before(line, way);
+    const int below = std::min(above + 1, nodes.size().height - 1);
+    std::fill(sum.begin(), sum.end(), 0.f);
+    const double start = timestamp + grid.start(line);
+    for (const vpScatteredLight::Lamp &lamp : lamps) {
+      const auto lit = static_cast<float>(lamp.emitter->light->over(start, start + grid.exposure()).share);
+      const float *upper = lamp.light[above], *lower = lamp.light[below];
+      for (size_t k = 0; k < sum.size(); ++k) {
+        sum[k] += lit * (upper[k] + way * (lower[k] - upper[k]));
+      }
+    }
+    float *row = light[line];
+    for (size_t k = 0; k + 1 < sum.size(); ++k) {
+      const int from = nodes.samples[k], to = nodes.samples[k + 1];
+      const float slope = (sum[k + 1] - sum[k]) / static_cast<float>(to - from);
+      for (int sample = from; sample < to; ++sample) {
+        row[sample] += sum[k] + slope * static_cast<float>(sample - from);
+      }
+    }
+    row[light.cols - 1] += sum.back();
+  }
+}
+
+//! Grey values before noise, saturation and rounding, lines and samples.
+cv::Mat_<float> vpRollingShutterRenderer::Impl::light(const vpSimulatedScene &scene, const Poses &wMc,
+                                                      double timestamp) const
+{
+  std::vector<vpEmitter> emitters(scene.lamps.begin(), scene.lamps.end());
+  for (const vpSimulatedWindow &window : scene.windows) {
+    emitters.emplace_back(window);
+  }
+
+  const vpNodeGrid &nodes = scattered.nodes();
+  std::vector<vpHomogeneousMatrix> poses; // of the lines of nodes
+  std::vector<double> times;
+  for (int line : nodes.lines) {
+    times.push_back(middle(line, timestamp));
+    poses.push_back(wMc(times.back()));
+  }
+  cv::Mat_<float> light(grid.lines(), grid.samples(), static_cast<float>(scene.ambient));
+  addScattered(scattered.of(emitters, scene, poses), timestamp, light);
+  for (const vpEmitter &emitter : emitters) {
+    paint(emitter, boxOf(emitter, poses, grid, share.band() + 2), wMc, timestamp, light);
+  }
+  const vpSilhouette silhouette(grid, nodes, camera.blur, scene, poses, times);
+  for (int line = 0; !silhouette.empty() && line < light.rows; ++line) {
+    const double time = middle(line, timestamp);
+    silhouette.hide(line, wMc(time), time, light[line]);
+  }
+  return light.mul(vignetting);
+}
+
+cv::Mat_<unsigned char> vpRollingShutterRenderer::Impl::digitised(const cv::Mat_<float> &light,
+                                                                  std::uint64_t seed) const
+{
+  cv::RNG random(seed * 0x9e3779b97f4a7c15ULL + 0x632be59bd9b4e019ULL); // neighbouring seeds lead far apart
+  cv::Mat_<float> noise(1, light.cols);
+  cv::Mat_<unsigned char> grey(light.size());
+  for (int line = 0; line < light.rows; ++line) {
+    random.fill(noise, cv::RNG::NORMAL, 0, 1);
+    const float *in = light[line], *normal = noise[0];
+    unsigned char *out = grey[line];
+    for (int sample = 0; sample < light.cols; ++sample) {
+      const float level = std::clamp(in[sample], 0.f, 255.f);
+      const float value = in[sample] + noiseOfLevel[static_cast<size_t>(level)] * normal[sample];
+      out[sample] = cv::saturate_cast<unsigned char>(value);
+    }
+  }
+  return grey;
+}
+
+//! The picture as software hands it on.
+cv::Mat vpRollingShutterRenderer::Impl::delivered(const cv::Mat &linesAndSamples) const
+{
+  cv::Mat picture = grid.upright(linesAndSamples);
+  if (camera.rig.resize.method == vpPictureResize::Method::area) {
+    cv::Mat resized;
+    const cv::Size size(static_cast<int>(camera.rig.width), static_cast<int>(camera.rig.height));
+    cv::resize(picture, resized, size, 0, 0, cv::INTER_AREA);
+    return resized;
+  }
+  return picture;
+}
+
+vpRollingShutterRenderer::vpRollingShutterRenderer(const vpSimulatedCamera &camera)
+    : m_impl(std::make_unique<Impl>(checked(camera)))
+{
+}
+
+vpRollingShutterRenderer::~vpRollingShutterRenderer() = default;
+
+void vpRollingShutterRenderer::render(const vpSimulatedScene &scene, const Poses &wMc, double timestamp,
+                                      std::uint64_t seed, vpImage<unsigned char> &I) const
+{
+  const cv::Mat_<unsigned char> grey =
+      m_impl->delivered(m_impl->digitised(m_impl->light(scene, wMc, timestamp), seed));
+  I.resize(static_cast<unsigned int>(grey.rows), static_cast<unsigned int>(grey.cols));
+  cv::Mat_<unsigned char> view(grey.rows, grey.cols, I.bitmap);
+  grey.copyTo(view);
+}
+
+cv::Mat_<float> vpRollingShutterRenderer::exact(const vpSimulatedScene &scene, const Poses &wMc,
+                                                double timestamp) const
+{
+  return m_impl->delivered(m_impl->light(scene, wMc, timestamp));
+}
+
+END_VISP_NAMESPACE

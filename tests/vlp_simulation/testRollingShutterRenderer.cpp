@@ -1,0 +1,377 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
+
+#include <gtest/gtest.h>
+#include <visp3/core/vpMeterPixelConversion.h>
+#include <visp3/core/vpRotationMatrix.h>
+
+#include "slowRollingShutter.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+using Kind = vpModulation::Kind;
+using Readout = vpRollingShutter::Readout;
+
+//! A corner of a sensor under one lamp; each test changes what it is about.
+struct Scene {
+  vpSimulatedCamera camera;
+  vpSimulatedScene scene;
+  vpHomogeneousMatrix pose; // wMc at time 0
+  double speed = 0;         // m/s along the map's x
+  double turn = 0;          // rad/s about the map's z
+  double phase = 0.3;       // periods
+  double time = 0.01;       // s, of the frame
+
+  Scene()
+  {
+    camera.rig.width = 84;
+    camera.rig.height = 76;
+    camera.rig.camera.initPersProjWithoutDistortion(1250, 1250, 31.4, 44.2);
+    camera.rig.shutter.rowTime = 43.1e-6;
+    camera.rig.shutter.exposure = 43.1e-6;
+    camera.blur = 0.7;
+    pose[2][3] = 0.19;
+    vpSimulatedLamp lamp;
+    lamp.lamp.id = "A";
+    lamp.lamp.position = Eigen::Vector3d(0.0123, -0.0087, 1.5);
+    lamp.lamp.size = 0.058; // 55 px
+    lamp.lamp.modulation.kind = Kind::pwm;
+    lamp.lamp.modulation.frequency = 2300;
+    lamp.lamp.modulation.duty = 0.4;
+    lamp.level = 200;
+    scene.lamps.push_back(lamp);
+  }
+
+  vpSimulatedLamp &lamp() { return scene.lamps[0]; }
+
+  vpHomogeneousMatrix at(double t) const
+  {
+    const vpHomogeneousMatrix drive(vpTranslationVector(speed * t, 0, 0), vpRotationMatrix(0, 0, turn * t));
+    return drive * pose;
+  }
+
+  cv::Mat_<float> fast()
+  {
+    lamp().light = vpLampLight(lamp().lamp.modulation, 1, phase);
+    return vpRollingShutterRenderer(camera).exact(scene, [this](double t) { return at(t); }, time);
+  }
+
+  double largestError(const std::string &what)
+  {
+    const cv::Mat_<float> drawn = fast();
+    const SlowRollingShutter slow{camera, scene, [this](double t) { return at(t); }, time, speed != 0 || turn != 0,
+                                  {phase}};
+    const cv::Mat_<double> expected = slow.exact();
+    double largest = 0, brightest = 0;
+    for (int v = 0; v < expected.rows; ++v)
+      for (int u = 0; u < expected.cols; ++u) {
+        largest = std::max(largest, std::abs(drawn(v, u) - expected(v, u)));
+        brightest = std::max(brightest, expected(v, u));
+      }
+    std::cout << what << ": largest error " << largest << " grey levels of " << brightest << "\n";
+    return largest;
+  }
+};
+
+const double tolerance = 0.5; // grey levels, at every pixel
+} // namespace
+
+TEST(RollingShutterRenderer, DiscOfAnySizeAndBlur)
+{
+  for (double blur : {0.3, 0.7, 1.5})
+    for (double size : {0.0125, 0.03, 0.058}) {
+      Scene scene;
+      scene.camera.blur = blur;
+      scene.lamp().lamp.size = size;
+      EXPECT_LT(scene.largestError("disc of " + std::to_string(size * 954) + " px, blur " + std::to_string(blur)),
+                tolerance);
+    }
+}
+
+TEST(RollingShutterRenderer, SquareAtAnyAngle)
+{
+  for (double blur : {0.3, 0.7})
+    for (double yaw : {0.0, 0.2, 0.7853981633974483}) {
+      Scene scene;
+      scene.camera.blur = blur;
+      scene.lamp().lamp.shape = vpLamp::Shape::square;
+      scene.lamp().lamp.size = 0.04;
+      scene.lamp().lamp.yaw = yaw;
+      EXPECT_LT(scene.largestError("square at " + std::to_string(yaw) + " rad, blur " + std::to_string(blur)), tolerance);
+    }
+}
+
+TEST(RollingShutterRenderer, LampDimmingTowardsItsRimAndOffItsAxis)
+{
+  Scene scene;
+  scene.lamp().rim = 0.5;
+  scene.lamp().halfPower = 0.6;
+  scene.camera.rig.camera.initPersProjWithoutDistortion(1250, 1250, -500, 400);
+  scene.pose[0][3] = -0.55;
+  scene.pose[1][3] = 0.36;
+  scene.camera.vignetting = 4;
+  EXPECT_LT(scene.largestError("rim, half power, vignetting"), tolerance);
+}
+
+TEST(RollingShutterRenderer, LensThatDistorts)
+{
+  Scene scene;
+  scene.camera.rig.camera.initPersProjWithDistortion(600, 610, -300, 350, -0.15, 0.16);
+  scene.pose[0][3] = -0.75;
+  scene.pose[1][3] = 0.65;
+  scene.lamp().lamp.size = 0.1;
+  EXPECT_LT(scene.largestError("distortion"), tolerance);
+}
+
+TEST(RollingShutterRenderer, CameraThatLeans)
+{
+  Scene scene;
+  scene.pose.insert(vpRotationMatrix(0.15, -0.1, 0.4));
+  scene.camera.rig.camera.initPersProjWithoutDistortion(1250, 1250, -60, 230);
+  EXPECT_LT(scene.largestError("tilt"), tolerance);
+}
+
+TEST(RollingShutterRenderer, HaloAndCeiling)
+{
+  for (bool square : {false, true}) {
+    Scene scene;
+    scene.camera.haloShare = 0.08;
+    scene.camera.haloRadius = 15;
+    scene.scene.ceilingShare = 0.05;
+    scene.scene.ceilingRadius = 0.05;
+    scene.lamp().lamp.shape = square ? vpLamp::Shape::square : vpLamp::Shape::disk;
+    EXPECT_LT(scene.largestError(square ? "halo of a square" : "halo of a disc"), tolerance);
+  }
+}
+
+TEST(RollingShutterRenderer, EveryModulationExposureAndReadout)
+{
+  vpModulation twoPulse;
+  twoPulse.kind = Kind::twoPulse;
+  twoPulse.frequency = 1500;
+  twoPulse.duty = 0.3;
+  twoPulse.phaseDifference = 0.37;
+  vpModulation word;
+  word.kind = Kind::word;
+  word.bits = "0111101011001";
+  word.chipRate = 8000;
+  vpModulation pwm = Scene().lamp().lamp.modulation;
+  pwm.frequency = 7400;
+  int k = 0;
+  for (const vpModulation &modulation : {twoPulse, word, pwm})
+    for (double exposure : {20e-6, 200e-6}) {
+      Scene scene;
+      scene.lamp().lamp.modulation = modulation;
+      scene.camera.rig.shutter.exposure = exposure;
+      scene.camera.rig.shutter.readout = static_cast<Readout>(k++ % 4);
+      EXPECT_LT(scene.largestError("modulation, exposure, readout " + std::to_string(k)), tolerance);
+    }
+}
+
+TEST(RollingShutterRenderer, CameraThatDrivesAndTurns)
+{
+  Scene scene;
+  scene.speed = 0.2;
+  scene.turn = 1;
+  scene.camera.rig.camera.initPersProjWithoutDistortion(1250, 1250, -500, 400);
+  scene.pose[0][3] = -0.55;
+  scene.pose[1][3] = 0.36;
+  scene.camera.rig.shutter.exposure = 200e-6;
+  EXPECT_LT(scene.largestError("driving and turning"), tolerance);
+}
+
+//! Contrast of stripes: swing of an unresized lamp's lines about their mean, over what the first harmonic has.
+TEST(RollingShutterRenderer, ContrastFollowsTheSincOfTheExposure)
+{
+  for (double exposure : {43e-6, 86e-6, 200e-6})
+    for (double frequency = 1000; frequency <= 8000; frequency += 500) {
+      vpModulation pwm;
+      pwm.kind = Kind::pwm;
+      pwm.frequency = frequency;
+      pwm.duty = 0.5;
+      const vpLampLight light(pwm);
+      // The first harmonic of many exposures spread evenly over the period.
+      static const int phases = 1000;
+      std::complex<double> sum = 0;
+      for (int k = 0; k < phases; ++k) {
+        const double middle = (k + 0.5) / phases / frequency;
+        sum += light.over(middle - exposure / 2, middle + exposure / 2).share *
+               std::polar(1.0, -2 * M_PI * middle * frequency);
+      }
+      const double x = M_PI * frequency * exposure;
+      EXPECT_NEAR(std::abs(sum) / phases, std::abs(std::sin(x) / x) / M_PI, 1e-5)
+          << frequency << " Hz, " << exposure << " s";
+    }
+}
+
+//! Middle of the light of the whole lamp.
+Eigen::Vector2d centroid(const cv::Mat_<float> &light, double background)
+{
+  Eigen::Vector2d sum(0, 0);
+  double weight = 0;
+  for (int v = 0; v < light.rows; ++v)
+    for (int u = 0; u < light.cols; ++u) {
+      weight += light(v, u) - background;
+      sum += (light(v, u) - background) * Eigen::Vector2d(u, v);
+    }
+  return sum / weight;
+}
+
+TEST(RollingShutterRenderer, LampsMiddleIsItsProjectionWhenStandingStill)
+{
+  for (double dx : {0.0, 0.004, 0.0071}) {
+    Scene scene;
+    scene.lamp().lamp.modulation.kind = Kind::unmodulated;
+    scene.pose[0][3] = dx;
+    const Eigen::Vector2d seen = centroid(scene.fast(), scene.scene.ambient);
+    const Eigen::Vector3d &lamp = scene.lamp().lamp.position;
+    double u = 0, v = 0;
+    vpMeterPixelConversion::convertPoint(scene.camera.rig.camera, (lamp.x() - dx) / (lamp.z() - 0.19),
+                                         lamp.y() / (lamp.z() - 0.19), u, v);
+    EXPECT_NEAR(seen.x(), u, 0.01);
+    EXPECT_NEAR(seen.y(), v, 0.01);
+  }
+}
+
+TEST(RollingShutterRenderer, RowsOfAMovingLampAreDisplacedAsTheRowTimesSay)
+{
+  Scene scene;
+  scene.lamp().lamp.modulation.kind = Kind::unmodulated;
+  scene.camera.rig.shutter.rowTime = 500e-6; // slow, so that there is something to see
+  scene.speed = 0.2;
+  const cv::Mat_<float> light = scene.fast();
+  const double scale = 1250 / (1.5 - 0.19); // px per m
+  for (int v = 15; v < 60; ++v) {
+    const double middle = centroid(light.row(v), scene.scene.ambient).x();
+    const double time = scene.time + 500e-6 * v + 0.5 * 43.1e-6;
+    EXPECT_NEAR(middle, 31.4 + scale * (0.0123 - 0.2 * time), 0.01) << "row " << v;
+  }
+}
+
+TEST(RollingShutterRenderer, NearestResizeTakesTheSensorsOwnPixels)
+{
+  Scene sensor;
+  Scene small;
+  small.camera.rig.resize.method = vpPictureResize::Method::nearest;
+  small.camera.rig.resize.sourceWidth = 84;
+  small.camera.rig.resize.sourceHeight = 76;
+  small.camera.rig.width = 33;
+  small.camera.rig.height = 30;
+  small.camera.rig.camera = small.camera.rig.resize.delivered(sensor.camera.rig.camera, 33, 30);
+  const cv::Mat_<float> whole = sensor.fast(), part = small.fast();
+  for (int v = 0; v < 30; ++v)
+    for (int u = 0; u < 33; ++u)
+      EXPECT_NEAR(part(v, u), whole(int(v / (30 / 76.)), int(u / (33 / 84.))), 0.02);
+}
+
+TEST(RollingShutterRenderer, AreaResizeIsTheMeanOfTheSensorsPixels)
+{
+  Scene sensor;
+  Scene small;
+  small.camera.rig.resize.method = vpPictureResize::Method::area;
+  small.camera.rig.resize.sourceWidth = 84;
+  small.camera.rig.resize.sourceHeight = 76;
+  small.camera.rig.width = 42;
+  small.camera.rig.height = 38;
+  small.camera.rig.camera = small.camera.rig.resize.delivered(sensor.camera.rig.camera, 42, 38);
+  const cv::Mat_<float> whole = sensor.fast(), part = small.fast();
+  for (int v = 0; v < 38; ++v)
+    for (int u = 0; u < 42; ++u)
+      EXPECT_NEAR(part(v, u), 0.25 * cv::sum(whole(cv::Rect(2 * u, 2 * v, 2, 2)))[0], 1e-3);
+}
+
+TEST(RollingShutterRenderer, NoiseHasTheVarianceOfPhotonsAndReadout)
+{
+  Scene scene;
+  scene.lamp().lamp.modulation.kind = Kind::unmodulated;
+  scene.lamp().lamp.size = 1; // fills the picture
+  scene.camera.readNoise = 1.5;
+  scene.camera.photonsPerLevel = 40;
+  scene.fast();
+  const vpRollingShutterRenderer renderer(scene.camera);
+  vpImage<unsigned char> I;
+  double sum = 0, squares = 0, count = 0;
+  for (unsigned int seed = 0; seed < 20; ++seed) {
+    renderer.render(scene.scene, [&](double t) { return scene.at(t); }, 0, seed, I);
+    for (unsigned int k = 0; k < I.getSize(); ++k) {
+      sum += I.bitmap[k];
+      squares += double(I.bitmap[k]) * I.bitmap[k];
+      ++count;
+    }
+  }
+  const double mean = sum / count, variance = squares / count - mean * mean;
+  EXPECT_NEAR(mean, 206, 0.05);
+  // 8 bits add 1 / 12; of 127 000 pixels the variance is good to 0.4 % (one sigma).
+  EXPECT_NEAR(variance, 1.5 * 1.5 + 206 / 40. + 1 / 12., 0.1);
+}
+
+TEST(RollingShutterRenderer, SameSeedSameBytes)
+{
+  Scene scene;
+  scene.fast();
+  const vpRollingShutterRenderer renderer(scene.camera), again(scene.camera);
+  vpImage<unsigned char> I, K, L;
+  const auto pose = [&](double t) { return scene.at(t); };
+  renderer.render(scene.scene, pose, 0, 7, I);
+  again.render(scene.scene, pose, 0, 7, K);
+  renderer.render(scene.scene, pose, 0, 8, L);
+  EXPECT_TRUE(I == K);
+  EXPECT_FALSE(I == L);
+}
+
+TEST(RollingShutterRenderer, SaturatesAtWhite)
+{
+  Scene scene;
+  scene.lamp().level = 1000;
+  scene.fast();
+  vpImage<unsigned char> I;
+  vpRollingShutterRenderer(scene.camera).render(scene.scene, [&](double t) { return scene.at(t); }, 0, 1, I);
+  EXPECT_EQ(I.getMaxValue(), 255);
+}
+
+TEST(RollingShutterRenderer, SomeoneWhoStandsUnderALampHidesIt)
+{
+  Scene scene;
+  scene.lamp().lamp.modulation.kind = Kind::unmodulated;
+  vpSimulatedPerson person;
+  person.radius = 0.1;
+  person.height = 1.2;
+  person.path = {{0, {2.0, 0.0}}, {1, {0.12, 0.0}}}; // the camera looks past at first
+  scene.scene.people.push_back(person);
+  const cv::Mat_<float> before = scene.fast();
+  scene.time = 1;
+  const cv::Mat_<float> after = scene.fast();
+  double lit = 0, dark = 0;
+  for (int v = 0; v < before.rows; ++v) {
+    lit += before(v, 43) > 100;
+    dark += after(v, 80) < person.level + 0.1 && after(v, 1) > scene.scene.ambient - 0.1;
+  }
+  EXPECT_GT(lit, 50);
+  EXPECT_EQ(dark, before.rows) << "the right side is hidden, the left is not";
+}
+
+TEST(RollingShutterRenderer, BadNumbersAreNamed)
+{
+  auto message = [](const vpSimulatedCamera &camera) -> std::string {
+    try {
+      vpRollingShutterRenderer renderer(camera);
+    } catch (const vpException &error) {
+      return error.getStringMessage();
+    }
+    return "accepted";
+  };
+  vpSimulatedCamera camera = Scene().camera;
+  EXPECT_EQ(message(camera), "accepted");
+  camera.rig.shutter.exposure = -1;
+  EXPECT_NE(message(camera).find("exposure"), std::string::npos);
+  camera = Scene().camera;
+  camera.blur = std::nan("");
+  EXPECT_NE(message(camera).find("blur"), std::string::npos);
+}
