@@ -83,6 +83,23 @@ TEST(SimulatorNoise, RunsRepeatBitByBitHoweverTheyAreSliced)
   EXPECT_FALSE(sameBytes(whole, drive(other, 1)));
 }
 
+TEST(SimulatorNoise, OfEverySourceComesFromTheSeed)
+{
+  std::vector<Settings> sources(4);
+  sources[0].slipSigma = 0.02;
+  sources[1].encoderSigma = 0.001;
+  sources[2].encoderTicks = true; // where the ticks lie
+  sources[3].turnSource = Settings::TurnSource::gyro;
+  sources[3].gyroNoiseDensity = 1e-3;
+  for (Settings &settings : sources) {
+    settings.startTime = 12.5;
+    const std::vector<double> one = drive(settings, 1);
+    EXPECT_TRUE(sameBytes(one, drive(settings, 1)));
+    settings.seed = 2;
+    EXPECT_FALSE(sameBytes(one, drive(settings, 1)));
+  }
+}
+
 TEST(SimulatorNoise, OfOneSourceStaysWhenAnotherChanges)
 {
   Settings settings = roughSettings();

@@ -18,7 +18,7 @@ struct VISP_EXPORT vpBaseVelocity {
 
 /*!
   How fast the base may go. Both at once share the wheels: |v| / limits.v + |w| / limits.w <= 1, which for two
-  driven wheels is the speed limit of the faster one.
+  driven wheels is the speed limit of the faster one. Both are above 0.
 */
 struct VISP_EXPORT vpBaseLimits {
   double v = 0; // m/s, straight on
@@ -43,7 +43,7 @@ struct VISP_EXPORT vpBaseLimits {
   Safety: a command stays in force until the next one. A base with a watchdog takes each setVelocity() as the
   sign that the control loop is alive, so call it once per control period even if nothing changed; the
   interface has no thread that would feed the watchdog behind the loop's back. Every way out of a loop,
-  exceptions included, calls stop(); implementations also call it when they are destroyed.
+  exceptions included, calls stop(); drivers of real bases also do so when they are destroyed.
 
   Errors are vpException: badValue for what the caller gave, ioError where the base cannot be reached, did not
   confirm, or refused. After an ioError from setVelocity() the command may or may not be in force.

@@ -37,14 +37,13 @@ struct VISP_EXPORT vpSimulatorTurtleBot3Settings {
   double separationError = 0;  // share
 
   // Slip: a wheel that rolls d moves the base by d (1 - slip - deviation), of which its encoder knows
-  // nothing. The deviation of each wheel is random, normal, its correlation exp(-d / slipLength); after D >>
-  // slipLength the distance is off by a standard deviation of slipSigma sqrt(2 slipLength D).
+  // nothing. The deviation of each wheel is random, normal, its correlation exp(-d / slipLength): after a
+  // distance D >> slipLength it adds up to a standard deviation of slipSigma sqrt(2 slipLength D).
   double slip = 0;          // share, common to both wheels
   double slipSigma = 0;     // share, standard deviation of each wheel's deviation
   double slipLength = 0.05; // m rolled
 
-  // Motors: the command arrives late, each wheel's goal is ramped, the wheel follows it with a first-order
-  // lag.
+  // Motors: the command arrives late, each wheel's goal is ramped, the wheel follows it with a lag.
   double commandDelay = 0;                                       // s
   double acceleration = std::numeric_limits<double>::infinity(); // m/s^2 at each wheel's rim
   double motorLag = 0;                                           // s, time constant
@@ -59,9 +58,8 @@ struct VISP_EXPORT vpSimulatorTurtleBot3Settings {
   bool encoderTicks = false;                  // readings are whole ticks, vpTurtleBot3::tick
   double encoderSigma = 0;                    // rad, of each reading of a wheel's angle
   TurnSource turnSource = TurnSource::wheels; // of vpOdometry::w
-  double gyroNoiseDensity =
-      0;               // rad/s/sqrt(Hz): angle random walk per sqrt(s); a mean over T: density / sqrt(T)
-  double gyroBias = 0; // rad/s, constant
+  double gyroNoiseDensity = 0;                // rad/s/sqrt(Hz): a mean over T is off by density / sqrt(T)
+  double gyroBias = 0;                        // rad/s, constant
 
   //! \throw vpException (badValue) with one line: the field, what came and what was expected.
   void check() const;
