@@ -103,24 +103,6 @@ void readModulation(const vpYamlNode &node, vpModulation &modulation)
   }
 }
 
-vpLamp readLamp(const vpYamlNode &node)
-{
-  vpLamp lamp;
-  lamp.id = node.text("id");
-  if (std::any_of(lamp.id.begin(), lamp.id.end(),
-                  [](char c) { return static_cast<unsigned char>(c) < 0x20; })) {
-    node.fail("id", vpShown(lamp.id) + ", expected text on one line");
-  }
-  const std::vector<double> position = node.numbers("position_m", 3);
-  lamp.position = Eigen::Vector3d(position[0], position[1], position[2]);
-  lamp.positionSigma = node.number("position_sigma_m", Range::notNegative, lamp.positionSigma);
-  readShape(node, lamp);
-  readModulation(node, lamp.modulation);
-  lamp.oscillatorPpm = node.number("oscillator_ppm", Range::notNegative, lamp.oscillatorPpm);
-  node.finish();
-  return lamp;
-}
-
 std::string modulationText(const vpModulation &modulation)
 {
   std::string text;
@@ -171,6 +153,24 @@ std::string lampText(const vpLamp &lamp)
 }
 } // namespace
 
+vpLamp vpLamp::read(const vpYamlNode &node)
+{
+  vpLamp lamp;
+  lamp.id = node.text("id");
+  if (std::any_of(lamp.id.begin(), lamp.id.end(),
+                  [](char c) { return static_cast<unsigned char>(c) < 0x20; })) {
+    node.fail("id", vpShown(lamp.id) + ", expected text on one line");
+  }
+  const std::vector<double> position = node.numbers("position_m", 3);
+  lamp.position = Eigen::Vector3d(position[0], position[1], position[2]);
+  lamp.positionSigma = node.number("position_sigma_m", Range::notNegative, lamp.positionSigma);
+  readShape(node, lamp);
+  readModulation(node, lamp.modulation);
+  lamp.oscillatorPpm = node.number("oscillator_ppm", Range::notNegative, lamp.oscillatorPpm);
+  node.finish();
+  return lamp;
+}
+
 const vpLamp *vpLampMap::find(const std::string &id) const
 {
   const auto found =
@@ -183,7 +183,7 @@ vpLampMap vpLampMap::load(const std::string &filename)
   const vpYamlNode top = vpYamlNode::load(filename);
   vpLampMap map;
   for (const vpYamlNode &node : top.mappings("lamps")) {
-    vpLamp lamp = readLamp(node);
+    vpLamp lamp = vpLamp::read(node);
     if (map.find(lamp.id)) {
       node.fail("id", vpShown(lamp.id) + " a second time, expected an id of its own");
     }

@@ -33,24 +33,6 @@ double sumOfPixels(double x)
   const double whole = std::floor(x);
   return whole * (whole - 1) / 2 + (x - whole) * whole;
 }
-
-//! A camera with other axes and the distortion of \e camera.
-vpCameraParameters withAxes(vpCameraParameters camera, double px, double py, double u0, double v0)
-{
-  switch (camera.get_projModel()) {
-  case vpCameraParameters::perspectiveProjWithoutDistortion:
-    camera.initPersProjWithoutDistortion(px, py, u0, v0);
-    break;
-  case vpCameraParameters::perspectiveProjWithDistortion:
-    camera.initPersProjWithDistortion(px, py, u0, v0, camera.get_kud(), camera.get_kdu());
-    break;
-  case vpCameraParameters::ProjWithKannalaBrandtDistortion:
-    camera.initProjWithKannalaBrandtDistortion(px, py, u0, v0,
-                                               camera.getKannalaBrandtDistortionCoefficients());
-    break;
-  }
-  return camera;
-}
 } // namespace
 
 double vpPictureResize::sensorPosition(unsigned int k, unsigned int delivered, unsigned int source) const
@@ -92,6 +74,24 @@ void vpPictureResize::sensorAxis(unsigned int delivered, unsigned int source, do
     break;
   }
   offset = 0;
+}
+
+vpCameraParameters vpPictureResize::withAxes(vpCameraParameters camera, double px, double py, double u0,
+                                             double v0)
+{
+  switch (camera.get_projModel()) {
+  case vpCameraParameters::perspectiveProjWithoutDistortion:
+    camera.initPersProjWithoutDistortion(px, py, u0, v0);
+    break;
+  case vpCameraParameters::perspectiveProjWithDistortion:
+    camera.initPersProjWithDistortion(px, py, u0, v0, camera.get_kud(), camera.get_kdu());
+    break;
+  case vpCameraParameters::ProjWithKannalaBrandtDistortion:
+    camera.initProjWithKannalaBrandtDistortion(px, py, u0, v0,
+                                               camera.getKannalaBrandtDistortionCoefficients());
+    break;
+  }
+  return camera;
 }
 
 vpCameraParameters vpPictureResize::delivered(const vpCameraParameters &sensor, unsigned int width,

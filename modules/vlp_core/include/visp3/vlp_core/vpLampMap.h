@@ -15,6 +15,8 @@
 
 BEGIN_VISP_NAMESPACE
 
+class vpYamlNode;
+
 //! A lamp of the map: where it hangs, how it looks, how it blinks.
 struct VISP_EXPORT vpLamp {
   enum class Shape { disk, square };
@@ -27,6 +29,9 @@ struct VISP_EXPORT vpLamp {
   double yaw = 0; // rad about z, of a square: its sides along x and y at 0
   vpModulation modulation;
   double oscillatorPpm = 50; // standard deviation of its clock; 50: a crystal, 10000: RC
+
+  //! Reads one entry of a lamps.yaml and finishes it. \throw vpException as vpLampMap::load().
+  static vpLamp read(const vpYamlNode &node);
 };
 
 //! The lamps of a place, as read from and written to a lamps.yaml.

@@ -59,6 +59,9 @@ struct VISP_EXPORT vpPictureResize {
   //! The way back: those of the sensor's full picture from those of the picture as delivered.
   vpCameraParameters sensor(const vpCameraParameters &delivered, unsigned int width,
                             unsigned int height) const;
+
+  //! A camera with these axes (pixels) and the distortion of \e camera.
+  static vpCameraParameters withAxes(vpCameraParameters camera, double px, double py, double u0, double v0);
 };
 
 /*!

@@ -1,0 +1,82 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpScenario_h
+#define vpScenario_h
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_core/vpVlpRig.h>
+#include <visp3/vlp_simulation/vpRobotMotion.h>
+#include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
+#include <visp3/vlp_simulation/vpSimulatedScene.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  What a scenario file says: the files that a robot believes, where the world differs from them, how the robot
+  moves, and what is left to chance. A seed makes a vpSimulation of it.
+*/
+struct VISP_EXPORT vpScenario {
+  //! Where the camera and the robot differ from the rig file. Added to, or multiplied with, what that says.
+  struct Deviation {
+    Eigen::Vector2d tilt = Eigen::Vector2d::Zero();           // rad, the camera turned about x and y of b
+    Eigen::Vector2d principalPoint = Eigen::Vector2d::Zero(); // px of the sensor
+    double focalLength = 1;
+    double rowTime = 1;
+  };
+
+  //! Standard deviations of what each seed draws anew.
+  struct Draw {
+    double tilt = 0;           // rad, each of the two
+    double principalPoint = 0; // px of the sensor, each of the two
+    double focalLength = 0;    // share
+    double rowTime = 0;        // share
+    double lampShift = 0;      // m, each coordinate of each lamp
+    bool clocks = true;        // the lamps' clocks run as their oscillator_ppm allows
+  };
+
+  //! How the lamps of the map shine, and where they truly hang.
+  struct Lamp {
+    vpSimulatedLamp simulated;                       // its light still without clock and phase
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero(); // m, from where the map has it
+    double clockPpm = 0;                             // ppm, on top of what is drawn
+    std::vector<std::pair<double, double>> dark;     // s, from and until
+  };
+
+  //! How the robot moves: held in places, or driven.
+  struct Motion {
+    std::vector<vpHomogeneousMatrix> stations; // wMb; empty: it is driven
+    double hold = 0;                           // s at each station
+    std::vector<vpTimedVelocity> commands;
+    vpSimulatorTurtleBot3Settings robot;
+  };
+
+  vpVlpRig rig;  // as the robot believes; its exposure already in whole lines where the camera has it so
+  vpLampMap map; // as the robot believes
+  Deviation deviation;
+  Draw draw;
+  vpSimulatedCamera camera; // all but its rig
+  vpSimulatedScene scene;   // all but its lamps
+  std::vector<Lamp> lamps;  // those of the map and those that no map knows
+  Motion motion;
+  double frameRate = 12; // Hz
+  size_t frames = 0;
+
+  /*!
+    Reads a scenario file (data/README.md explains each key); the files that it names are relative to it.
+    \throw vpException with one line that names file, line, field, what came and what was expected.
+  */
+  static vpScenario load(const std::string &filename);
+
+  std::unique_ptr<vpRobotMotion> makeMotion() const;
+};
+
+END_VISP_NAMESPACE
+
+#endif
