@@ -11,8 +11,8 @@
 #include <tuple>
 
 #include <opencv2/imgproc.hpp>
+#include <visp3/vlp_core/vpPoseText.h>
 
-#include "common/vpPoseText.h"
 #include "common/vpTextBlock.h"
 
 BEGIN_VISP_NAMESPACE

@@ -14,6 +14,7 @@
 #include <visp3/vlp_sensor/vpPictureSequence.h>
 #include <visp3/vlp_sensor/vpVideoSource.h>
 
+#include "common/vpCommandLine.h"
 #include "common/vpProgram.h"
 
 BEGIN_VISP_NAMESPACE
@@ -48,27 +49,6 @@ Files appear whole, at the end. Ctrl-C ends the work and keeps what was done so 
 
 Exit code: 0 done; 2 bad usage or bad input; 3 no position in any frame.
 )";
-
-void addName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
-             const std::string &help)
-{
-  app.add_option(option, name, help)->type_name(type)->check([](const std::string &text) {
-    return std::string(text.empty() ? "an empty name" : "");
-  });
-}
-
-void addChoice(CLI::App &app, const std::string &option, std::string &value,
-               const std::vector<std::string> &choices, const std::string &help)
-{
-  std::string names;
-  for (const std::string &choice : choices) {
-    names += (names.empty() ? "" : "|") + choice;
-  }
-  app.add_option(option, value, help)->type_name(names)->check([choices, names](const std::string &text) {
-    const bool known = std::find(choices.begin(), choices.end(), text) != choices.end();
-    return known ? std::string() : vpOneLine(text) + ", expected " + names;
-  });
-}
 
 [[noreturn]] void fail(const std::string &problem)
 {
@@ -107,22 +87,22 @@ bool vpLocateOptions::parse(int argc, char **argv)
   app.footer(footer);
   app.get_formatter()->column_width(28);
   std::string attitude = "mount", solver = "all";
-  addName(app, "--rig", rigFile, "FILE", "the camera on the robot; default with --run: DIR/rig.yaml");
-  addName(app, "--lamps", lampsFile, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
-  addName(app, "--run", run, "DIR", "frames of a recorded or simulated run: DIR/frames.csv");
-  addName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
+  vpAddName(app, "--rig", rigFile, "FILE", "the camera on the robot; default with --run: DIR/rig.yaml");
+  vpAddName(app, "--lamps", lampsFile, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
+  vpAddName(app, "--run", run, "DIR", "frames of a recorded or simulated run: DIR/frames.csv");
+  vpAddName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
   app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
-  addName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
-  addChoice(
+  vpAddName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
+  vpAddChoice(
       app, "--attitude", attitude, {"mount", "free"},
       "mount (default): roll and pitch from the rig; free: all six estimated, from three lamps or more");
-  addChoice(app, "--solver", solver, {"all", "two"},
-            "all (default): all lamps seen; two: the pair of best geometry, as in the paper");
+  vpAddChoice(app, "--solver", solver, {"all", "two"},
+              "all (default): all lamps seen; two: the pair of best geometry, as in the paper");
   app.add_flag("--no-track", "detect every frame afresh (today always so)");
-  addName(app, "--poses", poses, "FILE", "write the poses as a TUM trajectory");
-  addName(app, "--fixes", fixes, "FILE", "write the poses with their doubt as CSV");
-  addName(app, "--seen", seen, "FILE", "write what was seen in each frame as CSV");
-  addName(app, "--overlay", overlay, "DIR", "write a picture of each frame with what was seen");
+  vpAddName(app, "--poses", poses, "FILE", "write the poses as a TUM trajectory");
+  vpAddName(app, "--fixes", fixes, "FILE", "write the poses with their doubt as CSV");
+  vpAddName(app, "--seen", seen, "FILE", "write what was seen in each frame as CSV");
+  vpAddName(app, "--overlay", overlay, "DIR", "write a picture of each frame with what was seen");
   app.add_flag("--display", display, "show the same in a window; a click there ends the program");
   if (!vpParseCommandLine(app, argc, argv)) {
     return false;

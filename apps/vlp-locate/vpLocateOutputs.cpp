@@ -14,8 +14,8 @@
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpCsvTable.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpPoseText.h>
 
-#include "common/vpPoseText.h"
 #include "common/vpVlpOverlay.h"
 
 BEGIN_VISP_NAMESPACE

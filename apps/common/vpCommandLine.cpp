@@ -1,0 +1,36 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "common/vpCommandLine.h"
+
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
+
+#include "common/vpProgram.h"
+
+BEGIN_VISP_NAMESPACE
+
+void vpAddName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
+               const std::string &help)
+{
+  app.add_option(option, name, help)->type_name(type)->check([](const std::string &text) {
+    return std::string(text.empty() ? "an empty name" : "");
+  });
+}
+
+void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,
+                 const std::vector<std::string> &choices, const std::string &help)
+{
+  std::string names;
+  for (const std::string &choice : choices) {
+    names += (names.empty() ? "" : "|") + choice;
+  }
+  app.add_option(option, value, help)->type_name(names)->check([choices, names](const std::string &text) {
+    const bool known = std::find(choices.begin(), choices.end(), text) != choices.end();
+    return known ? std::string() : vpOneLine(text) + ", expected " + names;
+  });
+}
+
+END_VISP_NAMESPACE

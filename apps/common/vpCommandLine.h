@@ -1,0 +1,31 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpCommandLine_h
+#define vpCommandLine_h
+
+#include <string>
+#include <vector>
+
+#include <visp3/vlp_core/vpVlpNamespace.h>
+
+// Declared alone: CLI11's header is large.
+namespace CLI
+{
+class App;
+}
+
+BEGIN_VISP_NAMESPACE
+
+//! An option that takes a text which is not empty, as the name of a file.
+void vpAddName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
+               const std::string &help);
+
+//! An option that takes one of a few words.
+void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,
+                 const std::vector<std::string> &choices, const std::string &help);
+
+END_VISP_NAMESPACE
+
+#endif
