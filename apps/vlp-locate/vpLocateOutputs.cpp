@@ -10,12 +10,12 @@
 #include <system_error>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpCsvTable.h>
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpPoseText.h>
 
+#include "common/vpPictureFile.h"
 #include "common/vpVlpOverlay.h"
 
 BEGIN_VISP_NAMESPACE
@@ -78,16 +78,6 @@ std::string overlayName(const vpLocatedFrame &located)
 bool isSure(const vpVlpFix &fix)
 {
   return fix.valid && !fix.ambiguous;
-}
-
-void writePicture(const std::string &name, const cv::Mat &picture)
-{
-  std::vector<unsigned char> bytes;
-  cv::imencode(".png", picture, bytes);
-  vpAtomicFile file(name);
-  file.stream().write(reinterpret_cast<const char *>(bytes.data()),
-                      static_cast<std::streamsize>(bytes.size()));
-  file.commit();
 }
 } // namespace
 
@@ -181,7 +171,7 @@ void vpLocateOutputs::draw(const vpLocatedFrame &located)
 {
   const cv::Mat picture = vpDrawVlpOverlay(located.frame.I, located.location);
   if (!m_overlay.empty()) {
-    writePicture((fs::path(m_overlay) / overlayName(located)).string(), picture);
+    vpWritePicture((fs::path(m_overlay) / overlayName(located)).string(), picture);
   }
   if (m_window) {
     m_window->show(picture, "vlp-locate: " + located.frame.name);

@@ -52,6 +52,7 @@ void readCamera(const vpYamlNode &top, vpScenario &scenario)
     camera.vignetting = node.number("vignetting", Range::notNegative, camera.vignetting);
     camera.readNoise = node.number("read_noise", Range::notNegative, camera.readNoise);
     camera.photonsPerLevel = node.number("photons_per_level", Range::notNegative, camera.photonsPerLevel);
+    scenario.rig.shutter.exposure = node.number("exposure_s", Range::positive, scenario.rig.shutter.exposure);
     wholeLines = !node.has("whole_line_exposure") || node.boolean("whole_line_exposure");
     if (node.has("halo")) {
       const vpYamlNode halo = node.mapping("halo");
