@@ -4,6 +4,7 @@
  */
 #include <visp3/vlp_detection/vpOutlineFitter.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "vpChordShape.h"
@@ -69,6 +70,19 @@ void addElongationDoubt(vpLampOutline &ellipse, const vpLedRoi &roi, double prio
   }
 }
 
+//! Whether the region's lit lines all cross the outline: one that leaves some out was fitted to a part of the
+//! lamp.
+bool holds(const vpOutlineFit &fit, const vpLedRoi &roi)
+{
+  static const double most = 0.9; // share of the lines
+  const double margin = 1 + 3 * fit.blur;
+  const Eigen::Vector4d box = fit.outline.box();
+  const auto inside = std::count_if(roi.chords.begin(), roi.chords.end(), [&](const vpLedChord &chord) {
+    return chord.line > box(1) - margin && chord.line < box(3) + margin;
+  });
+  return static_cast<double>(inside) >= most * static_cast<double>(roi.chords.size());
+}
+
 const double softMisfit = 0.15; // share of the radius, root mean square of chord ends about their ellipse
 const double evenEdge = 0.45;   // evenness below which a lamp glows about a bright core
 
@@ -113,7 +127,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
   const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
   vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start);
-  const bool isEllipse = ellipse.run(roi.box, shapeSigma, maxIterations);
+  const bool isEllipse = ellipse.run(roi.box, shapeSigma, maxIterations) && holds(ellipse.result(), roi);
   if (isEllipse) {
     best = ellipse.result();
     addElongationDoubt(best.outline, roi, ellipse.prior());
@@ -122,12 +136,15 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   if (vpChordShape::rectangleMisfit(ends) <= 3 * ellipseMisfit) {
     vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions,
                                           vpQuadrilateralModel::from(ends));
-    if (sides.run(roi.box, shapeSigma, maxIterations) && sides.evenness() > evenEdge) {
+    if (sides.run(roi.box, shapeSigma, maxIterations) && sides.evenness() > evenEdge &&
+        holds(sides.result(), roi)) {
       best = even ? likelier(ellipse, sides) : sides.result();
       even = true;
     }
   }
-  if (!even && (isEllipse || ellipseMisfit < softMisfit * start.radius())) {
+  if (!even && (roi.cutAcross || roi.cutAlong)) {
+    best.outline = boxOf(roi); // what is seen of its light says nothing of its middle
+  } else if (!even && (isEllipse || ellipseMisfit < softMisfit * start.radius())) {
     if (!isEllipse) {
       best.outline = start.outline(Eigen::MatrixXd::Zero(2, 2));
       best.blur = softMisfit * start.radius();

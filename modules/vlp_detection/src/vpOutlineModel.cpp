@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -44,8 +45,56 @@ vpEllipseModel::vpEllipseModel(const Eigen::Vector2d &centre, double a, double b
   m_shape = R * Eigen::Vector2d(1 / a, 1 / b).asDiagonal() * R.transpose();
 }
 
+namespace
+{
+/*!
+  Circle of points on an arc, by Taubin's algebraic fit (1991): what is seen of a lamp that the border cuts
+  allows no ellipse. Nothing where the points lie on a line.
+*/
+std::optional<vpEllipseModel> circleOf(const std::vector<cv::Point2f> &points)
+{
+  const auto n = static_cast<Eigen::Index>(points.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 3> A(n, 3);
+  Eigen::RowVector2d middle = Eigen::RowVector2d::Zero();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    A.row(i) << 0, points[i].x, points[i].y;
+    middle += A.row(i).tail<2>() / static_cast<double>(n);
+  }
+  A.rightCols<2>().rowwise() -= middle;
+  A.col(0) = A.rightCols<2>().rowwise().squaredNorm();
+  const double mean = A.col(0).mean(), scale = 2 * std::sqrt(std::max(mean, 1e-12));
+  A.col(0) = (A.col(0).array() - mean) / scale;
+  const Eigen::Matrix3d normal = A.transpose() * A;
+  const Eigen::Vector3d p = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normal).eigenvectors().col(0);
+  const double p0 = p(0) / scale;
+  if (std::abs(p0) < 1e-9) {
+    return std::nullopt;
+  }
+  const double radius = 0.5 * std::sqrt(p.tail<2>().squaredNorm() + 4 * p0 * p0 * mean) / std::abs(p0);
+  const Eigen::Vector2d centre = middle.transpose() - 0.5 * p.tail<2>() / p0;
+  return vpEllipseModel(centre, radius, radius, 0);
+}
+
+//! Median distance of the points from the outline, px.
+double typicalDistance(const vpEllipseModel &model, const std::vector<cv::Point2f> &points)
+{
+  std::vector<double> distances;
+  for (const cv::Point2f &point : points) {
+    vpEllipseModel::Vector derivative;
+    Eigen::Vector2d normal;
+    distances.push_back(std::abs(model.distance({point.x, point.y}, derivative, normal)));
+  }
+  const auto middle = distances.begin() + static_cast<long>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+} // namespace
+
 vpEllipseModel vpEllipseModel::from(const std::vector<cv::Point2f> &points, const cv::Rect &box)
 {
+  const Eigen::Vector2d middle(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
+  const double radius = 0.5 * std::max(box.width, box.height);
+  std::optional<vpEllipseModel> best;
   if (points.size() >= 6) {
     const cv::RotatedRect e = cv::fitEllipseDirect(points);
     const double a = 0.5 * e.size.width;
@@ -54,12 +103,17 @@ vpEllipseModel vpEllipseModel::from(const std::vector<cv::Point2f> &points, cons
                                e.angle * M_PI / 180);
     const double ratio = a / b;
     if (ratio > 0.4 && ratio < 2.5 && model.plausible(box)) {
-      return model;
+      best = model;
+    }
+    // Of an arc alone the ellipse comes out much too small.
+    const std::optional<vpEllipseModel> circle = circleOf(points);
+    static const double closer = 0.7;
+    if (circle && circle->plausible(box) &&
+        (!best || typicalDistance(*circle, points) < closer * typicalDistance(*best, points))) {
+      best = circle;
     }
   }
-  const Eigen::Vector2d middle(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
-  const double radius = 0.5 * std::max(box.width, box.height);
-  return vpEllipseModel(middle, radius, radius, 0);
+  return best.value_or(vpEllipseModel(middle, radius, radius, 0));
 }
 
 double vpEllipseModel::distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const
