@@ -191,18 +191,43 @@ std::vector<Candidate> periodogram(const vpStripeProfile &profile, const Eigen::
   return maxima;
 }
 
-//! The best of several starts, by chi-square.
-void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
+/*!
+  The best of several starts. Edges of pulses fall between lines, so that minima lie side by side and the
+  curvature of one does not know the others: what explains the profile nearly as well widens the doubt.
+*/
+class BestFit
 {
-  if (!best || fit.chiSquare() < best->chiSquare()) {
-    best.emplace(std::move(fit));
+public:
+  void add(vpWaveformFit &&fit) { m_fits.push_back(std::move(fit)); }
+
+  std::optional<vpWaveformFit> result()
+  {
+    if (m_fits.empty()) {
+      return std::nullopt;
+    }
+    vpWaveformFit best = *std::min_element(m_fits.begin(), m_fits.end(),
+                                           [](const auto &a, const auto &b) { return a.cost() < b.cost(); });
+    using P = vpWaveformFit;
+    for (const P::Parameter parameter : {P::frequency, P::duty, P::phaseDifference}) {
+      double spread = 0;
+      for (const vpWaveformFit &other : m_fits) {
+        const double likelihood = std::exp(0.5 * (best.cost() - other.cost())); // beside that of the best
+        const double apart = other.value(parameter) - best.value(parameter);
+        spread = std::max(spread, likelihood * apart * apart);
+      }
+      best.widen(parameter, spread);
+    }
+    return best;
   }
-}
+
+private:
+  std::vector<vpWaveformFit> m_fits;
+};
 
 std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const std::vector<Candidate> &candidates,
                                     const vpWaveformFit::Settings &settings, const Eigen::VectorXd &envelope)
 {
-  std::optional<vpWaveformFit> best;
+  BestFit fits;
   for (const Candidate &candidate : candidates) {
     std::vector<double> exposures{profile.exposure};
     static const double longExposure =
@@ -216,12 +241,12 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const std::v
         // The first harmonic peaks in the middle of the pulse.
         if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, envelope, exposure) &&
             fit.preferStatedExposure()) {
-          keepBetter(best, std::move(fit));
+          fits.add(std::move(fit));
         }
       }
     }
   }
-  return best;
+  return fits.result();
 }
 
 std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
@@ -229,7 +254,7 @@ std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
                                          vpWaveformFit::Settings settings, const Eigen::VectorXd &envelope)
 {
   settings.twoPulse = true;
-  std::optional<vpWaveformFit> best;
+  BestFit fits;
   const double span = profile.time.back() - profile.time.front();
   for (const Candidate &candidate : candidates) {
     for (int multiple = 1; multiple <= 2; ++multiple) { // the second harmonic may be the stronger
@@ -241,13 +266,13 @@ std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
         for (double start : {0.0, 0.25, 0.5, 0.75}) {
           vpWaveformFit fit(profile, settings);
           if (fit.run(f, start, 0.3, k, envelope)) {
-            keepBetter(best, std::move(fit));
+            fits.add(std::move(fit));
           }
         }
       }
     }
   }
-  return best;
+  return fits.result();
 }
 
 void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)

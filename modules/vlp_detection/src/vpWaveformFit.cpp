@@ -217,12 +217,13 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
   for (double share : {0.33, 0.02}) {
     H = descend(share * line, residual);
   }
-  m_chiSquare = residual.squaredNorm();
+  const double chiSquare = residual.squaredNorm();
+  m_cost = cost(m_x, residual);
   // What the model leaves out is alike on neighbouring lines: they say less together than each says alone.
-  const double alike = residual.head(n - 1).dot(residual.tail(n - 1)) / std::max(m_chiSquare, 1e-12);
+  const double alike = residual.head(n - 1).dot(residual.tail(n - 1)) / std::max(chiSquare, 1e-12);
   const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
   const Eigen::MatrixXd covariance = H.inverse();
-  m_sigma = (covariance.diagonal().cwiseMax(0) * std::max(1.0, together * m_chiSquare / degreesOfFreedom()))
+  m_sigma = (covariance.diagonal().cwiseMax(0) * std::max(1.0, together * chiSquare / degreesOfFreedom()))
                 .cwiseSqrt();
   // Minima lie a fraction of a line apart (above), and the curvature of one of them does not know the others.
   const double placed =
@@ -233,7 +234,7 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
   return m_x.allFinite() && m_sigma.allFinite();
 }
 
-bool vpWaveformFit::preferStatedExposure()
+bool vpWaveformFit::preferStatedExposure(int attempts)
 {
   if (m_settings.twoPulse) {
     return true;
@@ -246,7 +247,8 @@ bool vpWaveformFit::preferStatedExposure()
     static const double usual = 0.2;     // of the duty
     return std::hypot(std::log(time / m_profile->exposure) / misstated, (share - 0.5) / usual);
   };
-  if (unlikely(m_x(exposure), m_x(duty)) <= unlikely(pulse, std::min(exposed, wholePeriod))) {
+  if (unlikely(m_x(exposure), m_x(duty)) <= unlikely(pulse, std::min(exposed, wholePeriod)) ||
+      attempts == 0) {
     return true;
   }
   if (exposed > wholePeriod) {
@@ -254,7 +256,7 @@ bool vpWaveformFit::preferStatedExposure()
   }
   Eigen::VectorXd envelope = m_x.tail(m_x.size() - waveformParameters);
   envelope(0) += std::log(std::min(1.0, m_x(duty) / exposed)) - std::log(std::min(1.0, exposed / m_x(duty)));
-  // The pulse's middle stays.
+  // The pulse's middle stays. The fit from there may find its way back.
   return run(m_x(frequency), m_x(phase) + 0.5 * (exposed - m_x(duty)), exposed, 0, envelope, pulse);
 }
 

@@ -5,6 +5,7 @@
 #ifndef vpWaveformFit_h
 #define vpWaveformFit_h
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -40,11 +41,14 @@ public:
     Pulse and exposure are both boxes, and which is which the profile does not say: swaps them where that
     brings exposure and duty together nearer to the stated exposure and to the duties that lamps have.
   */
-  bool preferStatedExposure();
+  bool preferStatedExposure(int attempts = 2);
 
   double value(Parameter p) const { return m_x(p); }
   double sigma(Parameter p) const { return m_sigma(p); }
-  double chiSquare() const { return m_chiSquare; }
+  //! Chi-square of profile and priors together.
+  double cost() const { return m_cost; }
+  //! Adds to the variance of a parameter.
+  void widen(Parameter p, double variance) { m_sigma(p) = std::sqrt(m_sigma(p) * m_sigma(p) + variance); }
   int degreesOfFreedom() const;
   //! Share of the stripes' power left unexplained, beyond what noise explains.
   double misfit() const;
@@ -68,7 +72,7 @@ private:
   Eigen::VectorXd m_weight;    // 1 / standard deviation of each line
   Eigen::VectorXd m_x;
   Eigen::VectorXd m_sigma;
-  double m_chiSquare = 0;
+  double m_cost = 0;
 };
 
 END_VISP_NAMESPACE
