@@ -112,6 +112,9 @@ void writeBeliefs(const vpSimulation &simulation, const NewFolder &folder)
 vpExitCode vpSimulate(const vpSimulateOptions &options)
 {
   vpScenario scenario = vpScenario::load(options.scenario);
+  if (options.typical) {
+    scenario.useTypicalRig();
+  }
   const size_t total = options.frames > 0 ? std::min(options.frames, scenario.frames) : scenario.frames;
   scenario.frames = total;
   NewFolder folder(options.out);

@@ -376,6 +376,14 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
       take(features, *two, true);
     }
   }
+  // Less than a period shows how long a pulse or a gap is, not how often it comes; and no fit of so few lines
+  // is put to the test.
+  static const double leastPeriods = 1.2;
+  static const size_t leastLines = 8;
+  const double span = std::abs(profile.time.back() - profile.time.front());
+  if (span * features.frequency < leastPeriods || profile.time.size() < leastLines) {
+    features.frequencySigma = std::max(features.frequencySigma, features.frequency);
+  }
   if (!(features.misfit < maxMisfit)) {
     features.signal = vpStripeFeatures::Signal::coded;
     const double none = std::numeric_limits<double>::quiet_NaN(); // what was fitted is not what it sends

@@ -222,7 +222,9 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
   // What the model leaves out is alike on neighbouring lines: they say less together than each says alone.
   const double alike = residual.head(n - 1).dot(residual.tail(n - 1)) / std::max(chiSquare, 1e-12);
   const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
-  const Eigen::MatrixXd covariance = H.inverse();
+  // A variance told from few residuals may be any.
+  const double untold = 1 + 6.0 / (degreesOfFreedom() * degreesOfFreedom());
+  const Eigen::MatrixXd covariance = untold * H.inverse();
   m_sigma = (covariance.diagonal().cwiseMax(0) * std::max(1.0, together * chiSquare / degreesOfFreedom()))
                 .cwiseSqrt();
   // Minima lie a fraction of a line apart (above), and the curvature of one of them does not know the others.

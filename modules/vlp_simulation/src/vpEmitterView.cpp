@@ -13,13 +13,14 @@
 BEGIN_VISP_NAMESPACE
 
 vpEmitter::vpEmitter(const vpSimulatedLamp &simulated)
-    : centre(simulated.lamp.position), disc(simulated.lamp.shape == vpLamp::Shape::disk), level(simulated.level),
-      rim(simulated.rim), light(&simulated.light)
+    : centre(simulated.lamp.position), disc(simulated.lamp.shape == vpLamp::Shape::disk),
+      level(simulated.level), rim(simulated.rim), light(&simulated.light)
 {
   const vpLamp &lamp = simulated.lamp;
   if (!(lamp.size > 0)) {
     throw vpException(vpException::badValue,
-                      "lamp " + lamp.id + ": its size is not known, expected a diameter or side to draw it by");
+                      "lamp " + lamp.id +
+                          ": its size is not known, expected a diameter or side to draw it by");
   }
   halfX = halfY = 0.5 * lamp.size;
   x = Eigen::Vector3d(std::cos(lamp.yaw), std::sin(lamp.yaw), 0);
@@ -29,8 +30,8 @@ vpEmitter::vpEmitter(const vpSimulatedLamp &simulated)
 
 vpEmitter::vpEmitter(const vpSimulatedWindow &window)
     : centre(window.centre), x(window.halfWidth.normalized()), y(window.halfHeight.normalized()),
-      halfX(window.halfWidth.norm()), halfY(window.halfHeight.norm()), disc(false), lamp(false), level(window.level),
-      light(&window.light)
+      halfX(window.halfWidth.norm()), halfY(window.halfHeight.norm()), disc(false), lamp(false),
+      level(window.level), light(&window.light)
 {
 }
 
@@ -54,7 +55,8 @@ vpEmitterView::vpEmitterView(const vpEmitter &emitter, const vpHomogeneousMatrix
   m_visible = emitter.lamp ? m_height > 0 : m_height != 0; // a lamp's normal points up
 }
 
-vpEmitterShare::Neighbours vpEmitterShare::around(const vpEmitterView &view, const Eigen::Vector2d &pixel) const
+vpEmitterShare::Neighbours vpEmitterShare::around(const vpEmitterView &view,
+                                                  const Eigen::Vector2d &pixel) const
 {
   Neighbours near;
   auto seen = [&](double du, double dv, Eigen::Vector2d &inPlane) {
@@ -68,10 +70,11 @@ vpEmitterShare::Neighbours vpEmitterShare::around(const vpEmitterView &view, con
 }
 
 /*!
-  Edge of a disc of radius \e bend (px) a distance \e d from the pixel: sums slices of blur and square along the edge, \e spread
-  their standard deviation, each of which meets a straight edge.
+  Edge of a disc of radius \e bend (px) a distance \e d from the pixel: sums slices of blur and square along
+  the edge, \e spread their standard deviation, each of which meets a straight edge.
 */
-vpPixelEdge vpEmitterShare::acrossBend(double d, const Eigen::Vector2d &normal, double bend, double spread) const
+vpPixelEdge vpEmitterShare::acrossBend(double d, const Eigen::Vector2d &normal, double bend,
+                                       double spread) const
 {
   static const double slight = 25; // times the spread: there one slice, shifted by the mean sagitta, does
   if (bend > slight * spread) {
@@ -93,15 +96,18 @@ vpPixelEdge vpEmitterShare::acrossBend(double d, const Eigen::Vector2d &normal, 
   return sum;
 }
 
-double vpEmitterShare::disc(const vpEmitter &emitter, const Eigen::Vector2d &inPlane, const Neighbours &near) const
+double vpEmitterShare::disc(const vpEmitter &emitter, const Eigen::Vector2d &inPlane,
+                            const Neighbours &near) const
 {
   const double radius = emitter.halfX;
   const double rho = inPlane.norm();
-  const double right = near.right.norm(), left = near.left.norm(), down = near.down.norm(), up = near.up.norm();
+  const double right = near.right.norm(), left = near.left.norm(), down = near.down.norm(),
+               up = near.up.norm();
   const Eigen::Vector2d gradient(right - left, down - up); // m per pixel
   const double steep = std::max(gradient.norm(), 1e-12);
   const double variance = m_blur * m_blur + 1.0 / 12; // px^2, of blur and square in any direction
-  // The distance from the middle is straight along its own gradient, so that all of its Laplacian is the outline's bend.
+  // The distance from the middle is straight along its own gradient, so that all of its Laplacian is the
+  // outline's bend.
   const double bend = std::max(4 * (right + left + down + up - 4 * rho) / steep, 1e-9); // 1/px
   const double d = (rho - radius) / steep;
   const vpPixelEdge edge = acrossBend(d, gradient / steep, 1 / bend - d, std::sqrt(variance));
@@ -144,7 +150,8 @@ double vpEmitterShare::rectangle(const vpEmitter &emitter, const Eigen::Vector2d
       double share = 1;
       for (int i = 0; i < 2; ++i) {
         const double sigma = blur * gradient.row(i).norm(); // m
-        share *= 0.5 * (std::erf((at(i) + half[i]) * M_SQRT1_2 / sigma) - std::erf((at(i) - half[i]) * M_SQRT1_2 / sigma));
+        share *= 0.5 * (std::erf((at(i) + half[i]) * M_SQRT1_2 / sigma) -
+                        std::erf((at(i) - half[i]) * M_SQRT1_2 / sigma));
       }
       sum += share;
     }

@@ -42,8 +42,8 @@ Stretches litStretches(const vpModulation &modulation)
 }
 
 /*!
-  Integrals over the periods from 0 to \e x of the light, and of the light times the period: those of the whole periods in
-  closed form, that of the begun one stretch by stretch.
+  Integrals over the periods from 0 to \e x of the light, and of the light times the period: those of the
+  whole periods in closed form, that of the begun one stretch by stretch.
 */
 void integrate(const Stretches &lit, double x, double &sum, double &moment)
 {
@@ -67,8 +67,8 @@ vpLampLight::vpLampLight(const vpModulation &modulation, double rate, double pha
       m_lit(litStretches(modulation))
 {
   if (modulation.kind != vpModulation::Kind::unmodulated && !(m_frequency > 0)) {
-    throw vpException(vpException::badValue,
-                      "lamp light: it repeats at " + std::to_string(m_frequency) + " Hz, expected more than 0");
+    throw vpException(vpException::badValue, "lamp light: it repeats at " + std::to_string(m_frequency) +
+                                                 " Hz, expected more than 0");
   }
 }
 

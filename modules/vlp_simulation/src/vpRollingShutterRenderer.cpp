@@ -25,8 +25,8 @@ namespace
 void expect(bool good, const char *field, double came, const char *expected)
 {
   if (!good) {
-    throw vpException(vpException::badValue,
-                      std::string("simulated camera: ") + field + ": " + vpNumberText(came) + ", expected " + expected);
+    throw vpException(vpException::badValue, std::string("simulated camera: ") + field + ": " +
+                                                 vpNumberText(came) + ", expected " + expected);
   }
 }
 
@@ -53,15 +53,16 @@ cv::Mat_<float> vignette(const vpSensorGrid &grid, double exponent)
   for (int line = 0; exponent > 0 && line < share.rows; ++line) {
     for (int sample = 0; sample < share.cols; ++sample) {
       // cos of the angle off the axis is 1 / sqrt(1 + x^2 + y^2)
-      share(line, sample) = static_cast<float>(std::pow(1 + grid.ray(line, sample).squaredNorm(), -0.5 * exponent));
+      share(line, sample) =
+          static_cast<float>(std::pow(1 + grid.ray(line, sample).squaredNorm(), -0.5 * exponent));
     }
   }
   return share;
 }
 
 //! The part of the grid that the emitter may be seen in.
-cv::Rect boxOf(const vpEmitter &emitter, const std::vector<vpHomogeneousMatrix> &wMc, const vpSensorGrid &grid,
-               double margin)
+cv::Rect boxOf(const vpEmitter &emitter, const std::vector<vpHomogeneousMatrix> &wMc,
+               const vpSensorGrid &grid, double margin)
 {
   Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9);
   for (const vpHomogeneousMatrix &pose : wMc) {
@@ -93,7 +94,8 @@ struct vpRollingShutterRenderer::Impl {
         vignetting(vignette(grid, given.vignetting)), noiseOfLevel(256)
   {
     for (size_t level = 0; level < noiseOfLevel.size(); ++level) {
-      const double photons = given.photonsPerLevel > 0 ? static_cast<double>(level) / given.photonsPerLevel : 0;
+      const double photons =
+          given.photonsPerLevel > 0 ? static_cast<double>(level) / given.photonsPerLevel : 0;
       noiseOfLevel[level] = static_cast<float>(std::sqrt(given.readNoise * given.readNoise + photons));
     }
   }
@@ -101,7 +103,8 @@ struct vpRollingShutterRenderer::Impl {
   cv::Mat_<float> light(const vpSimulatedScene &scene, const Poses &wMc, double timestamp) const;
   void paint(const vpEmitter &emitter, const cv::Rect &box, const Poses &wMc, double timestamp,
              cv::Mat_<float> &light) const;
-  void addScattered(const std::vector<vpScatteredLight::Lamp> &lamps, double timestamp, cv::Mat_<float> &light) const;
+  void addScattered(const std::vector<vpScatteredLight::Lamp> &lamps, double timestamp,
+                    cv::Mat_<float> &light) const;
   cv::Mat_<unsigned char> digitised(const cv::Mat_<float> &light, std::uint64_t seed) const;
   cv::Mat delivered(const cv::Mat &linesAndSamples) const;
 
@@ -132,7 +135,8 @@ void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::R
     if (!view.visible()) {
       continue;
     }
-    // m: what is nearer to the outline than this gets its exact share; pixels are no larger anywhere in the lamp.
+    // m: what is nearer to the outline than this gets its exact share; pixels are no larger anywhere in the
+    // lamp.
     Eigen::Vector2d first, last;
     const int edges[2] = {box.x, box.br().x - 1};
     const bool seen = view.at(grid.ray(line, edges[0]), first) && view.at(grid.ray(line, edges[1]), last);
@@ -164,8 +168,8 @@ void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::R
   }
 }
 
-void vpRollingShutterRenderer::Impl::addScattered(const std::vector<vpScatteredLight::Lamp> &lamps, double timestamp,
-                                                  cv::Mat_<float> &light) const
+void vpRollingShutterRenderer::Impl::addScattered(const std::vector<vpScatteredLight::Lamp> &lamps,
+                                                  double timestamp, cv::Mat_<float> &light) const
 {
   if (lamps.empty()) {
     return;

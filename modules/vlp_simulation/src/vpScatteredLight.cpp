@@ -25,7 +25,8 @@ public:
   BlurredDisc(double radius, double sigma) : m_step(0.1 * sigma)
   {
     const double reach = radius + 5 * sigma;
-    static const int strips = 48; // along the disc, by Gauss's rule for the chord's weight: no end to be missed
+    static const int strips =
+        48; // along the disc, by Gauss's rule for the chord's weight: no end to be missed
     for (double rho = 0; rho < reach + m_step; rho += m_step) {
       double sum = 0;
       for (int k = 0; k < strips; ++k) {
@@ -43,7 +44,8 @@ public:
   {
     const double x = rho / m_step;
     const auto k = static_cast<size_t>(x);
-    return k + 1 < m_share.size() ? m_share[k] + (x - static_cast<double>(k)) * (m_share[k + 1] - m_share[k]) : 0;
+    return k + 1 < m_share.size() ? m_share[k] + (x - static_cast<double>(k)) * (m_share[k + 1] - m_share[k])
+                                  : 0;
   }
 
 private:
@@ -51,7 +53,8 @@ private:
   std::vector<double> m_share;
 };
 
-//! Metres of the emitter's plane that a pixel of the sensor spans at its middle; 0 where the camera cannot see it.
+//! Metres of the emitter's plane that a pixel of the sensor spans at its middle; 0 where the camera cannot
+//! see it.
 double metresPerPixel(const vpSensorGrid &grid, const vpEmitterView &view)
 {
   Eigen::Vector2d pixel, right, left;

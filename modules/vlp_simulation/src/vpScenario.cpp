@@ -169,6 +169,26 @@ vpScenario vpScenario::load(const std::string &filename)
   return scenario;
 }
 
+void vpScenario::useTypicalRig()
+{
+  draw.tilt = 0.15 * degree;
+  draw.lampShift = 0.002;
+  draw.principalPoint = 1;
+  draw.focalLength = 0.003;
+  draw.rowTime = 0.0005;
+
+  const vpCameraParameters sensor = rig.resize.sensor(rig.camera, rig.width, rig.height);
+  const double lean = std::hypot(draw.tilt, draw.principalPoint / sensor.get_px());
+  double height = 0; // m, of the lamps above the camera
+  for (vpLamp &lamp : map.lamps) {
+    lamp.positionSigma = draw.lampShift;
+    height += (lamp.position.z() - rig.bMc[2][3]) / static_cast<double>(map.lamps.size());
+  }
+  rig.rotationSigma = Eigen::Vector3d(lean, lean, 0);
+  rig.translationSigma = Eigen::Vector3d(0, 0, draw.focalLength * height);
+  rig.shutter.rowTimeSigma = draw.rowTime * rig.shutter.rowTime;
+}
+
 std::unique_ptr<vpRobotMotion> vpScenario::makeMotion() const
 {
   if (!motion.stations.empty()) {

@@ -34,7 +34,8 @@ std::pair<int, int> between(const std::vector<double> &positions, double first, 
 } // namespace
 
 vpSensorGrid::vpSensorGrid(const vpVlpRig &rig)
-    : m_camera(rig.resize.sensor(rig.camera, rig.width, rig.height)), m_columns(rig.shutter.alongColumns()), m_exposure(rig.shutter.exposure)
+    : m_camera(rig.resize.sensor(rig.camera, rig.width, rig.height)), m_columns(rig.shutter.alongColumns()),
+      m_exposure(rig.shutter.exposure)
 {
   const bool area = rig.resize.method == vpPictureResize::Method::area; // of every pixel of the sensor
   const unsigned int width = area ? rig.resize.sourceWidth : rig.width;
@@ -92,7 +93,8 @@ bool vpSensorGrid::project(const Eigen::Vector3d &point, Eigen::Vector2d &pixel)
   if (point.z() < nearest) {
     return false;
   }
-  vpMeterPixelConversion::convertPoint(m_camera, point.x() / point.z(), point.y() / point.z(), pixel.x(), pixel.y());
+  vpMeterPixelConversion::convertPoint(m_camera, point.x() / point.z(), point.y() / point.z(), pixel.x(),
+                                       pixel.y());
   return pixel.allFinite();
 }
 

@@ -42,8 +42,9 @@ double passesBy(const vpSimulatedPerson &person, const vpHomogeneousMatrix &wMc,
 }
 } // namespace
 
-vpSilhouette::vpSilhouette(const vpSensorGrid &grid, const vpNodeGrid &nodes, double blur, const vpSimulatedScene &scene,
-                           const std::vector<vpHomogeneousMatrix> &wMc, const std::vector<double> &times)
+vpSilhouette::vpSilhouette(const vpSensorGrid &grid, const vpNodeGrid &nodes, double blur,
+                           const vpSimulatedScene &scene, const std::vector<vpHomogeneousMatrix> &wMc,
+                           const std::vector<double> &times)
     : m_grid(grid), m_nodes(nodes), m_blur(std::max(blur, 0.1))
 {
   double step = 1;
@@ -97,8 +98,8 @@ void vpSilhouette::hide(int line, const vpHomogeneousMatrix &wMc, double time, f
     for (size_t k = 0; k < m_nodes.samples.size(); ++k) {
       const int next = static_cast<int>(std::min(k + 1, m_nodes.samples.size() - 1));
       const int here = static_cast<int>(k);
-      const float corners[4] = {seen.distance(above, here), seen.distance(above, next), seen.distance(below, here),
-                                seen.distance(below, next)};
+      const float corners[4] = {seen.distance(above, here), seen.distance(above, next),
+                                seen.distance(below, here), seen.distance(below, next)};
       const float nearest = *std::min_element(corners, corners + 4);
       if (nearest > m_sure) {
         continue;

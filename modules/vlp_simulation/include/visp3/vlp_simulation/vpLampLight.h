@@ -13,8 +13,8 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  The light that a lamp gives over time, integrated over an exposure in closed form. The lamp runs on a clock of its
-  own: phase and rate are nobody's but its own.
+  The light that a lamp gives over time, integrated over an exposure in closed form. The lamp runs on a clock
+  of its own: phase and rate are nobody's but its own.
 */
 class VISP_EXPORT vpLampLight
 {
@@ -29,8 +29,8 @@ public:
   vpLampLight() = default;
 
   /*!
-    \param modulation An unset duty counts as 0.5. \param rate How fast its clock runs, 1 + error. \param phase Periods
-    (of the whole word) that have passed at time 0.
+    \param modulation An unset duty counts as 0.5. \param rate How fast its clock runs, 1 + error. \param
+    phase Periods (of the whole word) that have passed at time 0.
   */
   explicit vpLampLight(const vpModulation &modulation, double rate = 1, double phase = 0);
 
@@ -43,10 +43,10 @@ public:
 private:
   void addLight(double from, double to, double sign, double &sum, double &moment) const;
 
-  double m_frequency = 0;                         // Hz, of repetition; 0: always lit
-  double m_phase = 0;                             // periods
-  std::vector<std::pair<double, double>> m_lit;   // stretches of one period
-  std::vector<std::pair<double, double>> m_dark;  // s
+  double m_frequency = 0;                        // Hz, of repetition; 0: always lit
+  double m_phase = 0;                            // periods
+  std::vector<std::pair<double, double>> m_lit;  // stretches of one period
+  std::vector<std::pair<double, double>> m_dark; // s
 };
 
 END_VISP_NAMESPACE

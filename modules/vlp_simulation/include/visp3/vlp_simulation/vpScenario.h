@@ -74,6 +74,15 @@ struct VISP_EXPORT vpScenario {
   */
   static vpScenario load(const std::string &filename);
 
+  /*!
+    Draws the errors of a typical rig in place of the scenario's own: standard deviations of 0.15 degree of
+    roll and of pitch, 2 mm of each lamp's x, y and z, 1 px of the sensor's principal point, 0.3 % of the
+    focal length, 0.05 % of the row time. The robot knows how good its files are, not by how much they err:
+    rig and map state these standard deviations. A rig file has none for principal point and focal length;
+    they go into the lean and the camera's height.
+  */
+  void useTypicalRig();
+
   std::unique_ptr<vpRobotMotion> makeMotion() const;
 };
 

@@ -16,20 +16,22 @@ BEGIN_VISP_NAMESPACE
 
 //! A lamp that hangs there and shines straight down, whether a map knows it or not.
 struct VISP_EXPORT vpSimulatedLamp {
-  vpLamp lamp;             // its size must be known
-  vpLampLight light;       // over time
-  double level = 180;      // grey value that it alone has at the picture's middle, lit and seen from below
-  double rim = 0;          // share by which it is dimmer at its rim, falling with the square of the distance
-  double halfPower = 1.0471975511965976; // rad off its axis where it shines half as strong; 60 degrees: Lambert's law
+  vpLamp lamp;        // its size must be known
+  vpLampLight light;  // over time
+  double level = 180; // grey value that it alone has at the picture's middle, lit and seen from below
+  double rim = 0;     // share by which it is dimmer at its rim, falling with the square of the distance
+  double halfPower =
+      1.0471975511965976; // rad off its axis where it shines half as strong; 60 degrees: Lambert's law
 };
 
 //! A flat rectangle that shines without blinking: a window, a door to daylight, a light panel.
 struct VISP_EXPORT vpSimulatedWindow {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero(); // m, in the map
-  Eigen::Vector3d halfWidth = Eigen::Vector3d(0.5, 0, 0);  // m, from the centre to the middle of a side
-  Eigen::Vector3d halfHeight = Eigen::Vector3d(0, 0.5, 0); // m, the same to a neighbouring one, at a right angle
-  double level = 300;      // grey value as of a lamp; above 255: saturated
-  vpLampLight light;       // dark while it is shut
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();       // m, in the map
+  Eigen::Vector3d halfWidth = Eigen::Vector3d(0.5, 0, 0); // m, from the centre to the middle of a side
+  Eigen::Vector3d halfHeight =
+      Eigen::Vector3d(0, 0.5, 0); // m, the same to a neighbouring one, at a right angle
+  double level = 300;             // grey value as of a lamp; above 255: saturated
+  vpLampLight light;              // dark while it is shut
 };
 
 //! Someone who walks under the lamps: an upright cylinder, seen as a dark silhouette.
@@ -38,9 +40,9 @@ struct VISP_EXPORT vpSimulatedPerson {
     double time;              // s
     Eigen::Vector2d position; // m, of the axis
   };
-  double radius = 0.25; // m
-  double height = 1.7;  // m above the map's z = 0
-  double level = 3;     // grey value of the silhouette
+  double radius = 0.25;   // m
+  double height = 1.7;    // m above the map's z = 0
+  double level = 3;       // grey value of the silhouette
   std::vector<Step> path; // in order of time; stands still before the first and after the last
 
   Eigen::Vector2d at(double time) const;
@@ -51,8 +53,9 @@ struct VISP_EXPORT vpSimulatedScene {
   std::vector<vpSimulatedLamp> lamps;
   std::vector<vpSimulatedWindow> windows;
   std::vector<vpSimulatedPerson> people;
-  double ambient = 6;         // grey value of the ceiling
-  double ceilingShare = 0;    // light that the ceiling beside a lamp's middle gives back, share of the lamp's level
+  double ambient = 6; // grey value of the ceiling
+  double ceilingShare =
+      0; // light that the ceiling beside a lamp's middle gives back, share of the lamp's level
   double ceilingRadius = 0.3; // m: the share falls with the distance d as 1 / (1 + (d / radius)^2)^2
 };
 
