@@ -72,7 +72,7 @@ public:
   //! axes' labels and legend.
   int figureHeight(int width) const
   {
-    constexpr double beside = 100, below = 120, highest = 600; // px
+    constexpr double beside = 100, below = 120, highest = 560; // px
     return static_cast<int>(std::min(highest, below + (width - beside) * size().y() / size().x()));
   }
 
@@ -85,9 +85,9 @@ vpFigure scatter(const vpEvaluation &evaluation)
   const vpDispersion &dispersion = evaluation.dispersion;
   const Unit unit = Unit::ofErrors(evaluation.horizontal.largest);
   Box box;
-  std::string points, circle;
+  std::string rows, circle;
   for (const vpPosePair *pair : thinned(evaluation.pairs)) {
-    points += row({unit.perMetre * pair->errorX(), unit.perMetre * pair->errorY()});
+    rows += row({unit.perMetre * pair->errorX(), unit.perMetre * pair->errorY()});
   }
   constexpr int corners = 180;
   for (int i = 0; i <= corners; ++i) {
@@ -108,14 +108,14 @@ vpFigure scatter(const vpEvaluation &evaluation)
       "Horizontal errors. The paper's dispersion radius is half the distance of the farthest pair, " +
       length(dispersion.radius(), unit) + "; the smallest circle that holds all points has radius " +
       length(dispersion.circleRadius, unit) + ".";
-  std::vector<std::string> plots = {
-      "$points with points" + dots(evaluation.pairs.size()) + colour(blue) + title("estimate minus truth"),
-      "$truth with points pt 1 ps 2.2 lw 2.2" + colour(dark) + title("no error")};
+  std::vector<std::string> plots = {points("$points", evaluation.pairs.size(), blue, "estimate minus truth"),
+                                    "$truth with points pt 1 ps 2.2 lw 2.2" + colour(dark) +
+                                        title("no error")};
   if (dispersion.circleRadius > 0) {
     plots.insert(plots.begin(), "$circle with lines lw 1.6" + colour(red) + title("smallest circle"));
     plots.push_back("$farthest with lines lw 1.6 dt 2" + colour(orange) + title("farthest pair"));
   }
-  figure.body = block("points", points) + block("circle", circle) +
+  figure.body = block("points", rows) + block("circle", circle) +
                 block("farthest", row({a.x(), a.y()}) + row({b.x(), b.y()})) + block("truth", "0 0\n") +
                 box.ranges(unit.perMetre) + axisLabel("x", std::string("error in x (") + unit.name + ")") +
                 axisLabel("y", std::string("error in y (") + unit.name + ")") + joined(plots);
@@ -172,8 +172,7 @@ vpFigure track(const vpEvaluation &evaluation)
     box.hold(positionOf(pose.wMb));
   }
   const bool still = truth.size().maxCoeff() < 1e-3;
-  std::vector<std::string> plots = {"$points with points" + dots(evaluation.pairs.size()) + colour(pale) +
-                                    title("estimate")};
+  std::vector<std::string> plots = {points("$points", evaluation.pairs.size(), pale, "estimate")};
   std::vector<Vector2d> line, fitted;
   if (evaluation.line) {
     line = {evaluation.line->start(), evaluation.line->end()};
@@ -191,9 +190,9 @@ vpFigure track(const vpEvaluation &evaluation)
   }
   box.finish(0.01);
   const Unit unit = Unit::ofMap(box.size().maxCoeff());
-  std::string points;
+  std::string rows;
   for (const vpPosePair *pair : thinned(evaluation.pairs)) {
-    points += segment({positionOf(pair->estimate)}, unit.perMetre);
+    rows += segment({positionOf(pair->estimate)}, unit.perMetre);
   }
 
   vpFigure figure;
@@ -203,7 +202,7 @@ vpFigure track(const vpEvaluation &evaluation)
   if (evaluation.fitted) {
     figure.caption += " Fitted line: " + evaluation.fitted->textInCentimetres() + " (x, y in cm).";
   }
-  figure.body = block("truth", truthRows(evaluation, unit.perMetre)) + block("points", points) +
+  figure.body = block("truth", truthRows(evaluation, unit.perMetre)) + block("points", rows) +
                 block("line", segment(line, unit.perMetre)) +
                 block("fitted", segment(fitted, unit.perMetre)) + box.ranges(unit.perMetre) +
                 axisLabel("x", std::string("x (") + unit.name + ")") +
@@ -281,26 +280,26 @@ vpFigure overTime(const vpEvaluation &evaluation)
                  unit.perMetre * pair->errorY(), pair->errorYaw() * 180 / M_PI});
   }
   const double duration = evaluation.pairs.back().timestamp - evaluation.pairs.front().timestamp;
-  const bool many = evaluation.pairs.size() > 300;
-  const std::string style =
-      many ? " with points pt 7 ps 0.25" : " with linespoints lw 1" + dots(evaluation.pairs.size());
+  const size_t count = evaluation.pairs.size();
+  const bool joinedUp = count <= 300;
   const auto panel = [](double bottom, double top) {
     return "set bmargin at screen " + vpNumberText(bottom) + "\nset tmargin at screen " + vpNumberText(top) +
            "\n";
   };
   vpFigure figure;
   figure.name = "error-over-time";
-  figure.height = 560;
+  figure.height = 500;
   figure.caption = "Errors in x, y and yaw over time, from the first position on.";
   figure.body = block("errors", rows) + "set multiplot\nset lmargin 10\nset rmargin 2\n" +
-                (duration > 0 ? range("x", 0, duration) : range("x", -1, 1)) + panel(0.44, 0.92) +
+                (duration > 0 ? range("x", 0, duration) : range("x", -1, 1)) + panel(0.45, 0.90) +
                 "set format x ''\n" + axisLabel("y", std::string("error (") + unit.name + ")") +
                 joined({"0 with lines lw 1" + colour(grey) + " notitle",
-                        "$errors using 1:2" + style + colour(blue) + title("x"),
-                        "$errors using 1:3" + style + colour(orange) + title("y")}) +
-                panel(0.13, 0.38) + "set key off\nset format x '%g'\n" + axisLabel("x", "time (s)") +
+                        points("$errors using 1:2", count, blue, "x", joinedUp),
+                        points("$errors using 1:3", count, orange, "y", joinedUp)}) +
+                panel(0.15, 0.39) + "set key off\nset format x '%g'\n" + axisLabel("x", "time (s)") +
                 axisLabel("y", "yaw error (deg)") +
-                joined({"0 with lines lw 1" + colour(grey), "$errors using 1:4" + style + colour(green)}) +
+                joined({"0 with lines lw 1" + colour(grey),
+                        points("$errors using 1:4", count, green, "yaw", joinedUp)}) +
                 "unset multiplot\n";
   return figure;
 }

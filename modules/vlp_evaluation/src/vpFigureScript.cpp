@@ -50,14 +50,18 @@ std::string title(const std::string &text)
   return " title " + vpGnuplot::quoted(text);
 }
 
-std::string dots(size_t count)
-{
-  return count < 100 ? " pt 7 ps 0.8" : " pt 7 ps 0.4";
-}
-
 std::string colour(const char *name)
 {
   return std::string(" lc rgb '") + name + "'";
+}
+
+std::string points(const std::string &data, size_t count, const char *colourName, const std::string &text,
+                   bool joined)
+{
+  const std::string dots = " pt 7 ps ";
+  const std::string size = count < 100 ? "0.8" : (count <= 300 ? "0.5" : "0.35");
+  return data + (joined ? " with linespoints lw 1" : " with points") + dots + size + colour(colourName) +
+         " notitle, keyentry with points" + dots + "0.9" + colour(colourName) + title(text);
 }
 
 std::string joined(const std::vector<std::string> &plots)

@@ -46,10 +46,13 @@ std::string block(const std::string &name, const std::string &rows);
 std::string axisLabel(const char *axis, const std::string &text);
 std::string range(const char *axis, double low, double high);
 
-//! Parts of a plot: its entry in the legend, its colour, its points (small where they are many).
+//! Parts of a plot: its entry in the legend, its colour.
 std::string title(const std::string &text);
 std::string colour(const char *name);
-std::string dots(size_t count);
+
+//! A plot of \e count points, small where they are many, yet with a large one in the legend.
+std::string points(const std::string &data, size_t count, const char *colourName, const std::string &text,
+                   bool joined = false);
 
 //! The plots as one command.
 std::string joined(const std::vector<std::string> &plots);

@@ -21,7 +21,7 @@ body { margin: 0 auto; max-width: 68rem; padding: 1.25rem 1rem 3rem; color: var(
        font: 1rem/1.5 system-ui, "DejaVu Sans", Helvetica, Arial, sans-serif; }
 header { border-bottom: 3px solid var(--accent); margin-bottom: 1.25rem; padding-bottom: 0.75rem; }
 h1 { font-size: 1.6rem; line-height: 1.25; margin: 0 0 0.25rem; overflow-wrap: anywhere; }
-h2 { font-size: 1.15rem; margin: 1.75rem 0 0.5rem; }
+h2 { font-size: 1.25rem; margin: 1.75rem 0 0.75rem; }
 p { margin: 0.35rem 0; }
 .source, figcaption, .note { color: var(--soft); font-size: 0.875rem; overflow-wrap: anywhere; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(9rem, 1fr)); gap: 0.75rem; }
@@ -36,7 +36,11 @@ table { border-collapse: collapse; font-size: 0.92rem; font-variant-numeric: tab
 th, td { padding: 0.28rem 0.8rem 0.28rem 0; border-bottom: 1px solid var(--line); text-align: right; }
 th { font-weight: 600; }
 th:first-child { text-align: left; font-weight: 400; }
-section { break-inside: avoid; }
+.tables { display: flex; flex-wrap: wrap; gap: 1.25rem 3.5rem; }
+section { break-inside: avoid; max-width: 100%; }
+.note { max-width: 36rem; }
+h3 { font-size: 1rem; margin: 0 0 0.25rem; }
+@media (max-width: 40rem) { table { font-size: 0.8rem; } th, td { padding-right: 0.5rem; } }
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; }
   .figures { grid-template-columns: 1fr 1fr; gap: 0.5rem; }
@@ -113,7 +117,7 @@ std::string inlined(const vpReportFigure &figure)
 
 std::string html(const vpReportTable &table)
 {
-  std::string text = "<section>\n<h2>" + escaped(table.heading) + "</h2>\n<div class=\"scroll\"><table>\n";
+  std::string text = "<section>\n<h3>" + escaped(table.heading) + "</h3>\n<div class=\"scroll\"><table>\n";
   std::string head;
   bool headed = false;
   for (const std::string &column : table.columns) {
@@ -185,10 +189,11 @@ std::string vpHtmlReport(const std::string &title, const std::vector<std::string
     }
     page += "</div>\n";
   }
+  page += "<h2>Numbers</h2>\n<div class=\"tables\">\n";
   for (const vpReportTable &table : vpTablesOf(evaluation)) {
     page += html(table);
   }
-  return page + "</main>\n</body>\n</html>\n";
+  return page + "</div>\n</main>\n</body>\n</html>\n";
 }
 
 END_VISP_NAMESPACE
