@@ -262,6 +262,9 @@ TEST_F(VlpEvaluate, BadFilesAreOneClearLine)
   const std::string twice = folder.write("twice.tum", tum(3) + "0 0 0 0 0 0 0 1\n");
   const std::string zero = folder.write("zero.tum", "0 0 0 0 0 0 0 0\n");
   const std::string sigma = folder.write("sigma.csv", fixesHeader + "0,0,0,0,0,0,0,-1,,,,,A,fix,0.1\n");
+  const std::string far = folder.write("far.tum", "0 1.7e308 1.7e308 0 0 0 0 1\n");
+  expectOneLine({"--truth", truth, "--estimate", far, "--out", folder / "out"}, badInput,
+                {"errors: inf m, expected finite distances"});
   const std::string none = folder / "none.tum", out = folder / "out";
   expectOneLine({"--truth", none, "--estimate", estimate}, badInput,
                 {"none.tum: cannot be opened: No such file"});

@@ -130,3 +130,10 @@ TEST(ErrorDistribution, OfNoErrorsAndOfZeros)
   EXPECT_NEAR(zeros.pmf()[0], 1, 1e-12);
   EXPECT_EQ(zeros.cdf(0), 1);
 }
+
+TEST(ErrorDistribution, OfWhatIsNoDistanceIsRefused)
+{
+  vpExpectError([] { vpErrorDistribution({1, INFINITY}); }, {"errors: inf m, expected finite distances"});
+  vpExpectError([] { vpErrorDistribution({-1}); }, {"errors: -1 m"});
+  vpExpectError([] { vpErrorDistribution({NAN}); }, {"errors: nan m"});
+}

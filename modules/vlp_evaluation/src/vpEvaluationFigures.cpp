@@ -178,9 +178,10 @@ vpFigure track(const vpEvaluation &evaluation)
     line = {evaluation.line->start(), evaluation.line->end()};
     plots.push_back("$line with lines lw 3.5" + colour(green) + title("line from start to end"));
   }
-  plots.push_back(std::string("$truth with ") +
-                  (still ? "points pt 1 ps 2.2 lw 2.2" : "linespoints pt 7 ps 0.12 lw 1.3") + colour(dark) +
-                  title("truth"));
+  const std::string truthStyle = still                           ? "points pt 1 ps 2.2 lw 2.2"
+                                 : evaluation.truth.size() < 100 ? "linespoints pt 1 ps 0.9 lw 1.3"
+                                                                 : "linespoints pt 7 ps 0.12 lw 1.3";
+  plots.push_back("$truth with " + truthStyle + colour(dark) + title("truth"));
   if (evaluation.fitted) {
     fitted = endsOf(*evaluation.fitted, estimate);
     plots.push_back("$fitted with lines lw 1.6 dt 2" + colour(orange) + title("fitted to the estimate"));

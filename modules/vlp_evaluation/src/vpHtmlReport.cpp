@@ -28,8 +28,10 @@ p { margin: 0.35rem 0; }
 .tile { border: 1px solid var(--line); border-radius: 0.5rem; padding: 0.6rem 0.8rem; break-inside: avoid; }
 .tile b { display: block; font-size: 1.45rem; line-height: 1.2; color: var(--accent); white-space: nowrap; }
 .tile span { color: var(--soft); font-size: 0.8rem; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1.25rem; }
-figure { margin: 0; border: 1px solid var(--line); border-radius: 0.5rem; padding: 0.6rem; break-inside: avoid; }
+.figures { display: grid; gap: 1.25rem;
+           grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); }
+figure { margin: 0; padding: 0.6rem; border: 1px solid var(--line); border-radius: 0.5rem;
+         break-inside: avoid; }
 figure svg { display: block; width: 100%; height: auto; max-height: 34rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 0.92rem; font-variant-numeric: tabular-nums; }
@@ -145,7 +147,7 @@ std::string tile(const std::string &value, const std::string &meaning)
 std::string tiles(const vpEvaluation &evaluation)
 {
   const auto millimetres = [](double metres) {
-    std::array<char, 400> buffer;
+    std::array<char, 64> buffer;
     std::snprintf(buffer.data(), buffer.size(), "%.3g mm", 1000 * metres);
     return std::string(buffer.data());
   };
