@@ -39,6 +39,14 @@ std::vector<const vpPosePair *> thinned(const std::vector<vpPosePair> &pairs)
   return chosen;
 }
 
+//! For the caption, where not all pairs are drawn.
+std::string drawnOf(const vpEvaluation &evaluation)
+{
+  const size_t drawn = thinned(evaluation.pairs).size(), all = evaluation.pairs.size();
+  return drawn == all ? ""
+                      : " Drawn: " + std::to_string(drawn) + " of " + std::to_string(all) + " positions.";
+}
+
 //! The part of the plane that a map shows, m.
 class Box
 {
@@ -97,7 +105,12 @@ vpFigure scatter(const vpEvaluation &evaluation)
     circle += row({unit.perMetre * edge.x(), unit.perMetre * edge.y()});
     box.hold(edge);
   }
-  box.hold(Vector2d::Zero());
+  // Far from the cloud it would make a dot of it.
+  const bool showsZero =
+      dispersion.circleRadius == 0 || dispersion.centre.norm() < 4 * dispersion.circleRadius;
+  if (showsZero) {
+    box.hold(Vector2d::Zero());
+  }
   box.finish(1e-6);
   const Vector2d a = unit.perMetre * dispersion.first, b = unit.perMetre * dispersion.second;
 
@@ -108,12 +121,21 @@ vpFigure scatter(const vpEvaluation &evaluation)
       "Horizontal errors. The paper's dispersion radius is half the distance of the farthest pair, " +
       length(dispersion.radius(), unit) + "; the smallest circle that holds all points has radius " +
       length(dispersion.circleRadius, unit) + ".";
-  std::vector<std::string> plots = {points("$points", evaluation.pairs.size(), blue, "estimate minus truth"),
-                                    "$truth with points pt 1 ps 2.2 lw 2.2" + colour(dark) +
-                                        title("no error")};
+  figure.caption +=
+      showsZero ? ""
+                : " No error at all would be " + length(dispersion.centre.norm(), unit) + " from its middle.";
+  figure.caption += drawnOf(evaluation);
+  std::vector<std::string> plots;
   if (dispersion.circleRadius > 0) {
-    plots.insert(plots.begin(), "$circle with lines lw 1.6" + colour(red) + title("smallest circle"));
-    plots.push_back("$farthest with lines lw 1.6 dt 2" + colour(orange) + title("farthest pair"));
+    plots.push_back("$circle with lines lw 1.6" + colour(red) + title("smallest circle"));
+  }
+  plots.push_back(points("$points", evaluation.pairs.size(), blue, "estimate minus truth"));
+  if (showsZero) {
+    plots.push_back("$truth with points pt 1 ps 2.2 lw 2.2" + colour(dark) + title("no error"));
+  }
+  if (dispersion.circleRadius > 0) {
+    plots.push_back("$farthest with linespoints pt 6 ps 1.1 lw 1.6 dt 2" + colour(orange) +
+                    title("farthest pair"));
   }
   figure.body = block("points", rows) + block("circle", circle) +
                 block("farthest", row({a.x(), a.y()}) + row({b.x(), b.y()})) + block("truth", "0 0\n") +
@@ -203,6 +225,7 @@ vpFigure track(const vpEvaluation &evaluation)
   if (evaluation.fitted) {
     figure.caption += " Fitted line: " + evaluation.fitted->textInCentimetres() + " (x, y in cm).";
   }
+  figure.caption += drawnOf(evaluation);
   figure.body = block("truth", truthRows(evaluation, unit.perMetre)) + block("points", rows) +
                 block("line", segment(line, unit.perMetre)) +
                 block("fitted", segment(fitted, unit.perMetre)) + box.ranges(unit.perMetre) +
@@ -290,7 +313,7 @@ vpFigure overTime(const vpEvaluation &evaluation)
   vpFigure figure;
   figure.name = "error-over-time";
   figure.height = 500;
-  figure.caption = "Errors in x, y and yaw over time, from the first position on.";
+  figure.caption = "Errors in x, y and yaw over time, from the first position on." + drawnOf(evaluation);
   figure.body = block("errors", rows) + "set multiplot\nset lmargin 10\nset rmargin 2\n" +
                 (duration > 0 ? range("x", 0, duration) : range("x", -1, 1)) + panel(0.45, 0.90) +
                 "set format x ''\n" + axisLabel("y", std::string("error (") + unit.name + ")") +
