@@ -59,9 +59,10 @@ size_t characterAt(const std::string &text, size_t i)
   if (first < 0x80) {
     return first >= 0x20 && first != 0x7f ? 1 : 0;
   }
-  const size_t length = first >= 0xC2 && first < 0xE0
-                            ? 2
-                            : (first >= 0xE0 && first < 0xF0 ? 3 : (first >= 0xF0 && first < 0xF5 ? 4 : 0));
+  if (first < 0xC2 || first > 0xF4) {
+    return 0;
+  }
+  const size_t length = first < 0xE0 ? 2 : (first < 0xF0 ? 3 : 4);
   for (size_t k = 1; k < length; ++k) {
     if ((byte(i + k) & 0xC0) != 0x80) {
       return 0;
@@ -95,11 +96,14 @@ std::string escaped(const std::string &text)
   return html;
 }
 
-void replaceAll(std::string &text, const std::string &from, const std::string &to)
+std::string replaced(const std::string &text, const std::string &from, const std::string &to)
 {
-  for (size_t i = text.find(from); i != std::string::npos; i = text.find(from, i + to.size())) {
-    text.replace(i, from.size(), to);
+  std::string result;
+  size_t begin = 0;
+  for (size_t i; (i = text.find(from, begin)) != std::string::npos; begin = i + from.size()) {
+    result.append(text, begin, i - begin).append(to);
   }
+  return result.append(text, begin, std::string::npos);
 }
 
 //! The picture as an element of the page: without prologue, and with ids that no other figure has.
@@ -107,13 +111,13 @@ std::string inlined(const vpReportFigure &figure)
 {
   const size_t begin = figure.svg.find("<svg");
   std::string svg = begin == std::string::npos ? std::string() : figure.svg.substr(begin);
-  replaceAll(svg, "\n xmlns:xlink=\"http://www.w3.org/1999/xlink\"", ""); // HTML's own href does
-  replaceAll(svg, "xlink:href=", "href=");
+  svg = replaced(svg, "\n xmlns:xlink=\"http://www.w3.org/1999/xlink\"", ""); // HTML's own href does
+  svg = replaced(svg, "xlink:href=", "href=");
   for (const std::string quote : {"'", "\""}) {
-    replaceAll(svg, " id=" + quote, " id=" + quote + figure.name + "-");
-    replaceAll(svg, "href=" + quote + "#", "href=" + quote + "#" + figure.name + "-");
+    svg = replaced(svg, " id=" + quote, " id=" + quote + figure.name + "-");
+    svg = replaced(svg, "href=" + quote + "#", "href=" + quote + "#" + figure.name + "-");
   }
-  replaceAll(svg, "url(#", "url(#" + figure.name + "-");
+  svg = replaced(svg, "url(#", "url(#" + figure.name + "-");
   return svg;
 }
 
