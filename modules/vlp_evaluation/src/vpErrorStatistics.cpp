@@ -80,6 +80,12 @@ vpErrorDistribution::vpErrorDistribution(std::vector<double> errors)
   if (m_errors.empty()) {
     return;
   }
+  for (const double error : m_errors) {
+    if (!(error >= 0 && std::isfinite(error))) {
+      throw vpException(vpException::badValue,
+                        "errors: " + vpNumberText(error) + " m, expected finite distances of 0 or more");
+    }
+  }
   std::sort(m_errors.begin(), m_errors.end());
   constexpr double bins = 20, least = 1e-9; // m; errors below it are rounding
   m_binWidth = roundedUp(std::max(m_errors.back(), least) / bins);

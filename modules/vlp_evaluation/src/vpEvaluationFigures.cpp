@@ -5,12 +5,12 @@
 #include <visp3/vlp_evaluation/vpEvaluationFigures.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_evaluation/vpGnuplot.h>
+
+#include "vpFigureScript.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -18,80 +18,12 @@ namespace
 {
 using Eigen::Vector2d;
 
-constexpr const char *blue = "#2563a8", *red = "#c0392b", *green = "#23895b", *orange = "#d9730d",
-                     *grey = "#8a8f98", *dark = "#2b2f36";
-
-//! The unit in which lengths up to some magnitude (m) are read best.
-struct Unit {
-  const char *name;
-  double perMetre;
-
-  static Unit ofErrors(double largest)
-  {
-    return largest < 0.1 ? Unit{"mm", 1000} : (largest < 1 ? Unit{"cm", 100} : Unit{"m", 1});
-  }
-  static Unit ofMap(double extent) { return extent < 5 ? Unit{"cm", 100} : Unit{"m", 1}; }
-};
-
-std::string number(double value, const char *format = "%.3g")
-{
-  std::array<char, 64> buffer;
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
-}
-
-std::string length(double metres, const Unit &unit)
-{
-  return number(metres * unit.perMetre) + " " + unit.name;
-}
-
-std::string row(const std::vector<double> &values)
-{
-  std::string text;
-  for (const double value : values) {
-    text += (text.empty() ? "" : " ") + vpNumberText(value);
-  }
-  return text + "\n";
-}
-
-std::string block(const std::string &name, const std::string &rows)
-{
-  return "$" + name + " << END\n" + rows + "END\n";
-}
-
-std::string axisLabel(const char *axis, const std::string &text)
-{
-  return std::string("set ") + axis + "label " + vpGnuplot::quoted(text) + "\n";
-}
-
-std::string range(const char *axis, double low, double high)
-{
-  return std::string("set ") + axis + "range [" + vpNumberText(low) + ":" + vpNumberText(high) + "]\n";
-}
-
-std::string title(const std::string &text)
-{
-  return " title " + vpGnuplot::quoted(text);
-}
-
-std::string colour(const char *name)
-{
-  return std::string(" lc rgb '") + name + "'";
-}
-
-std::string joined(const std::vector<std::string> &plots)
-{
-  std::string text = "plot ";
-  for (size_t i = 0; i < plots.size(); ++i) {
-    text += (i == 0 ? "" : ", \\\n     ") + plots[i];
-  }
-  return text + "\n";
-}
+using namespace vpFigureScript;
 
 //! The pairs to draw: all, or of each stretch the first and the worst.
 std::vector<const vpPosePair *> thinned(const std::vector<vpPosePair> &pairs)
 {
-  constexpr size_t most = 4000;
+  constexpr size_t most = 2000;
   const size_t stretch = pairs.size() <= most ? 1 : (2 * pairs.size() + most - 1) / most;
   std::vector<const vpPosePair *> chosen;
   for (size_t begin = 0; begin < pairs.size(); begin += stretch) {
@@ -107,7 +39,15 @@ std::vector<const vpPosePair *> thinned(const std::vector<vpPosePair> &pairs)
   return chosen;
 }
 
-//! The part of the plane that a map shows, in units of its axes.
+//! For the caption, where not all pairs are drawn.
+std::string drawnOf(const vpEvaluation &evaluation)
+{
+  const size_t drawn = thinned(evaluation.pairs).size(), all = evaluation.pairs.size();
+  return drawn == all ? ""
+                      : " Drawn: " + std::to_string(drawn) + " of " + std::to_string(all) + " positions.";
+}
+
+//! The part of the plane that a map shows, m.
 class Box
 {
 public:
@@ -130,16 +70,18 @@ public:
     m_high = middle + half;
   }
 
-  std::string ranges() const
+  std::string ranges(double scale) const
   {
-    return "set size ratio -1\n" + range("x", m_low.x(), m_high.x()) + range("y", m_low.y(), m_high.y());
+    return "set size ratio -1\n" + range("x", scale * m_low.x(), scale * m_high.x()) +
+           range("y", scale * m_low.y(), scale * m_high.y());
   }
 
-  //! Height of a figure of that width (px) that the box fills: beside it stand the axes' labels and legend.
+  //! Height of a figure of that width (px) that the box fills, or that a screen holds: beside it stand the
+  //! axes' labels and legend.
   int figureHeight(int width) const
   {
-    constexpr double beside = 100, below = 130; // px
-    return static_cast<int>(below + (width - beside) * size().y() / size().x());
+    constexpr double beside = 100, below = 120, highest = 560; // px
+    return static_cast<int>(std::min(highest, below + (width - beside) * size().y() / size().x()));
   }
 
 private:
@@ -151,21 +93,25 @@ vpFigure scatter(const vpEvaluation &evaluation)
   const vpDispersion &dispersion = evaluation.dispersion;
   const Unit unit = Unit::ofErrors(evaluation.horizontal.largest);
   Box box;
-  std::string points, circle;
+  std::string rows, circle;
   for (const vpPosePair *pair : thinned(evaluation.pairs)) {
-    points += row({unit.perMetre * pair->errorX(), unit.perMetre * pair->errorY()});
+    rows += row({unit.perMetre * pair->errorX(), unit.perMetre * pair->errorY()});
   }
   constexpr int corners = 180;
   for (int i = 0; i <= corners; ++i) {
     const double angle = 2 * M_PI * i / corners;
     const Vector2d edge =
-        unit.perMetre *
-        (dispersion.centre + dispersion.circleRadius * Vector2d(std::cos(angle), std::sin(angle)));
-    circle += row({edge.x(), edge.y()});
+        dispersion.centre + dispersion.circleRadius * Vector2d(std::cos(angle), std::sin(angle));
+    circle += row({unit.perMetre * edge.x(), unit.perMetre * edge.y()});
     box.hold(edge);
   }
-  box.hold(Vector2d::Zero());
-  box.finish(1e-3 * unit.perMetre);
+  // Far from the cloud it would make a dot of it.
+  const bool showsZero =
+      dispersion.circleRadius == 0 || dispersion.centre.norm() < 4 * dispersion.circleRadius;
+  if (showsZero) {
+    box.hold(Vector2d::Zero());
+  }
+  box.finish(1e-6);
   const Vector2d a = unit.perMetre * dispersion.first, b = unit.perMetre * dispersion.second;
 
   vpFigure figure;
@@ -175,76 +121,102 @@ vpFigure scatter(const vpEvaluation &evaluation)
       "Horizontal errors. The paper's dispersion radius is half the distance of the farthest pair, " +
       length(dispersion.radius(), unit) + "; the smallest circle that holds all points has radius " +
       length(dispersion.circleRadius, unit) + ".";
-  std::vector<std::string> plots = {"$points with points pt 7 ps 0.45" + colour(blue) +
-                                        title("estimate minus truth"),
-                                    "$truth with points pt 1 ps 1.6 lw 2" + colour(dark) + title("no error")};
+  figure.caption +=
+      showsZero ? ""
+                : " No error at all would be " + length(dispersion.centre.norm(), unit) + " from its middle.";
+  figure.caption += drawnOf(evaluation);
+  std::vector<std::string> plots;
   if (dispersion.circleRadius > 0) {
-    plots.insert(plots.begin(), "$circle with lines lw 1.6" + colour(red) + title("smallest circle"));
-    plots.push_back("$farthest with lines lw 1.6 dt 2" + colour(orange) + title("farthest pair"));
+    plots.push_back("$circle with lines lw 1.6" + colour(red) + title("smallest circle"));
   }
-  figure.body = block("points", points) + block("circle", circle) +
+  plots.push_back(points("$points", evaluation.pairs.size(), blue, "estimate minus truth"));
+  if (showsZero) {
+    plots.push_back("$truth with points pt 1 ps 2.2 lw 2.2" + colour(dark) + title("no error"));
+  }
+  if (dispersion.circleRadius > 0) {
+    plots.push_back("$farthest with linespoints pt 6 ps 1.1 lw 1.6 dt 2" + colour(orange) +
+                    title("farthest pair"));
+  }
+  figure.body = block("points", rows) + block("circle", circle) +
                 block("farthest", row({a.x(), a.y()}) + row({b.x(), b.y()})) + block("truth", "0 0\n") +
-                box.ranges() + axisLabel("x", std::string("error in x (") + unit.name + ")") +
+                box.ranges(unit.perMetre) + axisLabel("x", std::string("error in x (") + unit.name + ")") +
                 axisLabel("y", std::string("error in y (") + unit.name + ")") + joined(plots);
   return figure;
 }
 
-//! Truth's positions in the order of time, a thousand or two of them.
-std::string truthRows(const vpTrajectory &truth, double scale, Box &box)
+Vector2d positionOf(const vpHomogeneousMatrix &pose)
+{
+  return {pose[0][3], pose[1][3]};
+}
+
+//! Truth's positions in the order of time, a thousand or two of them; parted where it has a gap.
+std::string truthRows(const vpEvaluation &evaluation, double scale)
 {
   constexpr size_t most = 2000;
+  const vpTrajectory &truth = evaluation.truth;
   const size_t step = truth.size() / most + 1;
   std::string rows;
-  for (size_t i = 0; i < truth.size();
-       i += i + 1 == truth.size() ? 1 : std::min(step, truth.size() - 1 - i)) {
-    const Vector2d position = scale * Vector2d(truth[i].wMb[0][3], truth[i].wMb[1][3]);
-    rows += row({position.x(), position.y()});
-    box.hold(position);
+  for (size_t i = 0; i < truth.size(); ++i) {
+    const bool gap = i > 0 && truth[i].timestamp - truth[i - 1].timestamp > evaluation.longestGap;
+    if (gap || i % step == 0 || i + 1 == truth.size()) {
+      const Vector2d position = scale * positionOf(truth[i].wMb);
+      rows += (gap ? "\n" : "") + row({position.x(), position.y()});
+    }
+  }
+  return rows;
+}
+
+//! Ends of the fitted line, as far as the estimate goes.
+std::vector<Vector2d> endsOf(const vpFittedLine &line, const Box &estimate)
+{
+  const int axis = line.alongY ? 1 : 0;
+  return {line.at(estimate.low()[axis]), line.at(estimate.high()[axis])};
+}
+
+std::string segment(const std::vector<Vector2d> &ends, double scale)
+{
+  std::string rows;
+  for (const Vector2d &end : ends) {
+    rows += row({scale * end.x(), scale * end.y()});
   }
   return rows;
 }
 
 vpFigure track(const vpEvaluation &evaluation)
 {
-  Box extent;
-  truthRows(evaluation.truth, 1, extent);
-  Box estimated;
+  Box estimate, truth, box; // m
   for (const vpPosePair &pair : evaluation.pairs) {
-    extent.hold({pair.estimate[0][3], pair.estimate[1][3]});
-    estimated.hold({pair.estimate[0][3], pair.estimate[1][3]});
+    estimate.hold(positionOf(pair.estimate));
+    box.hold(positionOf(pair.estimate));
   }
-  const Unit unit = Unit::ofMap(extent.size().maxCoeff());
-
-  Box box;
-  std::string points, fitted, line;
-  const std::string truth = truthRows(evaluation.truth, unit.perMetre, box);
-  for (const vpPosePair *pair : thinned(evaluation.pairs)) {
-    const Vector2d position = unit.perMetre * Vector2d(pair->estimate[0][3], pair->estimate[1][3]);
-    points += row({position.x(), position.y()});
-    box.hold(position);
+  for (const vpTimedPose &pose : evaluation.truth.poses()) {
+    truth.hold(positionOf(pose.wMb));
+    box.hold(positionOf(pose.wMb));
   }
-  const bool still = evaluation.truth.size() == 1 || extent.size().maxCoeff() < 1e-3;
-  std::vector<std::string> plots = {std::string("$truth with ") +
-                                        (still ? "points pt 1 ps 1.6 lw 2" : "lines lw 3") + colour(grey) +
-                                        title("truth"),
-                                    "$points with points pt 7 ps 0.45" + colour(blue) + title("estimate")};
+  const bool still = truth.size().maxCoeff() < 1e-3;
+  std::vector<std::string> plots = {points("$points", evaluation.pairs.size(), pale, "estimate")};
+  std::vector<Vector2d> line, fitted;
   if (evaluation.line) {
-    for (const Vector2d &end : {evaluation.line->start(), evaluation.line->end()}) {
-      line += row({unit.perMetre * end.x(), unit.perMetre * end.y()});
-      box.hold(unit.perMetre * end);
-    }
-    plots.push_back("$line with lines lw 1.4 dt 3" + colour(green) + title("line start to end"));
+    line = {evaluation.line->start(), evaluation.line->end()};
+    plots.push_back("$line with lines lw 3.5" + colour(green) + title("line from start to end"));
   }
+  const std::string truthStyle = still                           ? "points pt 1 ps 2.2 lw 2.2"
+                                 : evaluation.truth.size() < 100 ? "linespoints pt 1 ps 0.9 lw 1.3"
+                                                                 : "linespoints pt 7 ps 0.12 lw 1.3";
+  plots.push_back("$truth with " + truthStyle + colour(dark) + title("truth"));
   if (evaluation.fitted) {
-    const int axis = evaluation.fitted->alongY ? 1 : 0;
-    for (const double coordinate : {estimated.low()[axis], estimated.high()[axis]}) {
-      const Vector2d end = unit.perMetre * evaluation.fitted->at(coordinate);
-      fitted += row({end.x(), end.y()});
-      box.hold(end);
-    }
-    plots.push_back("$fitted with lines lw 1.4 dt 2" + colour(orange) + title("fitted line"));
+    fitted = endsOf(*evaluation.fitted, estimate);
+    plots.push_back("$fitted with lines lw 1.6 dt 2" + colour(orange) + title("fitted to the estimate"));
   }
-  box.finish(0.01 * unit.perMetre);
+  for (const Vector2d &end : line) {
+    box.hold(end);
+  }
+  box.finish(0.01);
+  const Unit unit = Unit::ofMap(box.size().maxCoeff());
+  std::string rows;
+  for (const vpPosePair *pair : thinned(evaluation.pairs)) {
+    rows += segment({positionOf(pair->estimate)}, unit.perMetre);
+  }
 
   vpFigure figure;
   figure.name = "track";
@@ -253,8 +225,10 @@ vpFigure track(const vpEvaluation &evaluation)
   if (evaluation.fitted) {
     figure.caption += " Fitted line: " + evaluation.fitted->textInCentimetres() + " (x, y in cm).";
   }
-  figure.body = block("truth", truth) + block("points", points) + block("line", line) +
-                block("fitted", fitted) + box.ranges() +
+  figure.caption += drawnOf(evaluation);
+  figure.body = block("truth", truthRows(evaluation, unit.perMetre)) + block("points", rows) +
+                block("line", segment(line, unit.perMetre)) +
+                block("fitted", segment(fitted, unit.perMetre)) + box.ranges(unit.perMetre) +
                 axisLabel("x", std::string("x (") + unit.name + ")") +
                 axisLabel("y", std::string("y (") + unit.name + ")") + joined(plots);
   return figure;
@@ -274,7 +248,8 @@ vpFigure pmf(const vpEvaluation &evaluation)
   figure.caption = "Probability mass function of the horizontal error, in bins of " +
                    length(distribution.binWidth(), unit) + ".";
   figure.body = block("bins", bins) + range("x", 0, width * static_cast<double>(distribution.pmf().size())) +
-                "set yrange [0:*]\nset key off\nset style fill solid 0.85 border rgb 'white'\n" +
+                "set yrange [0:*]\nset key off\nset boxwidth " + vpNumberText(width) +
+                "\nset style fill solid 0.85 border rgb 'white'\n" +
                 axisLabel("x", std::string("horizontal error (") + unit.name + ")") +
                 axisLabel("y", "share of the positions (%)") + "plot $bins with boxes" + colour(blue) + "\n";
   return figure;
@@ -306,17 +281,15 @@ vpFigure cdf(const vpEvaluation &evaluation)
   figure.name = "cdf";
   figure.caption = "Cumulative distribution function of the horizontal error: 90 % below " +
                    length(p90, unit) + ", 95 % below " + length(p95, unit) + ".";
-  std::vector<std::string> plots = {
-      "$levels using 1:2 with lines lw 1 dt 3" + colour(dark) + title("90 % and 95 %"),
-      "$errors with steps lw 2.4" + colour(blue) + title("error against the truth")};
-  figure.body = block("errors", steps(evaluation.distribution, unit.perMetre, end)) +
-                block("levels", row({0, 90}) + row({end, 90}) + "\n" + row({0, 95}) + row({end, 95}));
+  std::vector<std::string> plots = {"$errors with steps lw 2.4" + colour(blue) +
+                                    title("error against the truth")};
+  figure.body = block("errors", steps(evaluation.distribution, unit.perMetre, end));
   if (line) {
     figure.body += block("line", steps(evaluation.offLine, unit.perMetre, end));
     plots.push_back("$line with steps lw 2" + colour(orange) + title("distance from the line"));
     figure.caption += " The distance from the line is the paper's measure.";
   }
-  figure.body += range("x", 0, end) + "set yrange [0:101]\nset ytics 20\n" +
+  figure.body += range("x", 0, end) + "set yrange [0:101]\nset ytics (0, 20, 40, 60, 80, 90, 95, 100)\n" +
                  axisLabel("x", std::string("error (") + unit.name + ")") +
                  axisLabel("y", "share of the positions (%)") + joined(plots);
   return figure;
@@ -331,26 +304,26 @@ vpFigure overTime(const vpEvaluation &evaluation)
                  unit.perMetre * pair->errorY(), pair->errorYaw() * 180 / M_PI});
   }
   const double duration = evaluation.pairs.back().timestamp - evaluation.pairs.front().timestamp;
-  const std::string style =
-      evaluation.pairs.size() > 300 ? " with points pt 7 ps 0.25" : " with linespoints pt 7 ps 0.35 lw 1";
+  const size_t count = evaluation.pairs.size();
+  const bool joinedUp = count <= 300;
   const auto panel = [](double bottom, double top) {
     return "set bmargin at screen " + vpNumberText(bottom) + "\nset tmargin at screen " + vpNumberText(top) +
            "\n";
   };
   vpFigure figure;
   figure.name = "error-over-time";
-  figure.height = 560;
-  figure.caption = "Errors in x, y and yaw over time, from the first position on.";
+  figure.height = 500;
+  figure.caption = "Errors in x, y and yaw over time, from the first position on." + drawnOf(evaluation);
   figure.body = block("errors", rows) + "set multiplot\nset lmargin 10\nset rmargin 2\n" +
-                (duration > 0 ? range("x", 0, duration) : range("x", -1, 1)) + panel(0.44, 0.92) +
-                "set key top center outside horizontal\nset format x ''\n" +
-                axisLabel("y", std::string("error (") + unit.name + ")") +
+                (duration > 0 ? range("x", 0, duration) : range("x", -1, 1)) + panel(0.45, 0.90) +
+                "set format x ''\n" + axisLabel("y", std::string("error (") + unit.name + ")") +
                 joined({"0 with lines lw 1" + colour(grey) + " notitle",
-                        "$errors using 1:2" + style + colour(blue) + title("x"),
-                        "$errors using 1:3" + style + colour(orange) + title("y")}) +
-                panel(0.13, 0.38) + "set key off\nset format x\n" + axisLabel("x", "time (s)") +
+                        points("$errors using 1:2", count, blue, "x", joinedUp),
+                        points("$errors using 1:3", count, orange, "y", joinedUp)}) +
+                panel(0.15, 0.39) + "set key off\nset format x '%g'\n" + axisLabel("x", "time (s)") +
                 axisLabel("y", "yaw error (deg)") +
-                joined({"0 with lines lw 1" + colour(grey), "$errors using 1:4" + style + colour(green)}) +
+                joined({"0 with lines lw 1" + colour(grey),
+                        points("$errors using 1:4", count, green, "yaw", joinedUp)}) +
                 "unset multiplot\n";
   return figure;
 }
@@ -360,22 +333,30 @@ const char *const look = "set encoding utf8\n"
                          "set border 3 lc rgb '#555b66'\n"
                          "set tics nomirror out scale 0.6 textcolor rgb '#2b2f36'\n"
                          "set grid lc rgb '#dfe3e8' lw 0.8 lt 1\n"
-                         "set key bmargin center horizontal samplen 2.2\n";
+                         "set key tmargin center horizontal reverse Left samplen 2 height 0.6\n"
+                         "set format '%g'\n";
 } // namespace
 
 std::string vpFigure::png() const
 {
   return vpGnuplot::draw("set terminal pngcairo noenhanced size " + std::to_string(2 * width) + "," +
                          std::to_string(2 * height) +
-                         " font 'DejaVu Sans,20' linewidth 2 pointscale 2 background '#ffffff'\n" + look +
-                         body);
+                         " font 'DejaVu Sans,20' rounded linewidth 2 pointscale 2 background '#ffffff'\n" +
+                         look + body);
 }
 
 std::string vpFigure::svg() const
 {
-  return vpGnuplot::draw(
+  std::string text = vpGnuplot::draw(
       "set terminal svg noenhanced dynamic size " + std::to_string(width) + "," + std::to_string(height) +
-      " font 'DejaVu Sans, Helvetica, Arial, sans-serif,14' background '#ffffff'\n" + look + body);
+      " font 'DejaVu Sans, Helvetica, Arial, sans-serif,14' rounded background '#ffffff'\n" + look + body);
+  // gnuplot names each curve, which browsers show where the mouse rests.
+  for (size_t begin; (begin = text.find("<title>gnuplot_plot_")) != std::string::npos;) {
+    text.erase(begin, text.find("</title>", begin) + std::string("</title>").size() - begin);
+  }
+  const std::string title = "<title>Gnuplot</title>";
+  const size_t begin = text.find(title);
+  return begin == std::string::npos ? text : text.replace(begin, title.size(), "<title>" + name + "</title>");
 }
 
 std::vector<vpFigure> vpFiguresOf(const vpEvaluation &evaluation)

@@ -153,10 +153,8 @@ std::string vpGnuplot::quoted(const std::string &text)
   std::string string = "'";
   for (const char c : text) {
     const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    string += control ? ' ' : c;
-    if (c == '\'') {
-      string += c;
-    }
+    // gnuplot's own way, two quotes for one, fails at the beginning of a string.
+    string += c == '\'' ? std::string("\xE2\x80\x99") : std::string(1, control ? ' ' : c);
   }
   return string + "'";
 }

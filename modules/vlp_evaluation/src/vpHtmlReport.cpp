@@ -21,22 +21,28 @@ body { margin: 0 auto; max-width: 68rem; padding: 1.25rem 1rem 3rem; color: var(
        font: 1rem/1.5 system-ui, "DejaVu Sans", Helvetica, Arial, sans-serif; }
 header { border-bottom: 3px solid var(--accent); margin-bottom: 1.25rem; padding-bottom: 0.75rem; }
 h1 { font-size: 1.6rem; line-height: 1.25; margin: 0 0 0.25rem; overflow-wrap: anywhere; }
-h2 { font-size: 1.15rem; margin: 1.75rem 0 0.5rem; }
+h2 { font-size: 1.25rem; margin: 1.75rem 0 0.75rem; }
 p { margin: 0.35rem 0; }
 .source, figcaption, .note { color: var(--soft); font-size: 0.875rem; overflow-wrap: anywhere; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(9rem, 1fr)); gap: 0.75rem; }
 .tile { border: 1px solid var(--line); border-radius: 0.5rem; padding: 0.6rem 0.8rem; break-inside: avoid; }
 .tile b { display: block; font-size: 1.45rem; line-height: 1.2; color: var(--accent); white-space: nowrap; }
 .tile span { color: var(--soft); font-size: 0.8rem; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1.25rem; }
-figure { margin: 0; border: 1px solid var(--line); border-radius: 0.5rem; padding: 0.6rem; break-inside: avoid; }
+.figures { display: grid; gap: 1.25rem;
+           grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); }
+figure { margin: 0; padding: 0.6rem; border: 1px solid var(--line); border-radius: 0.5rem;
+         break-inside: avoid; }
 figure svg { display: block; width: 100%; height: auto; max-height: 34rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 0.92rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.28rem 0.8rem 0.28rem 0; border-bottom: 1px solid var(--line); text-align: right; }
 th { font-weight: 600; }
 th:first-child { text-align: left; font-weight: 400; }
-section { break-inside: avoid; }
+.tables { display: flex; flex-wrap: wrap; gap: 1.25rem 3.5rem; }
+section { break-inside: avoid; max-width: 100%; }
+.note { max-width: 36rem; }
+h3 { font-size: 1rem; margin: 0 0 0.25rem; }
+@media (max-width: 40rem) { table { font-size: 0.8rem; } th, td { padding-right: 0.5rem; } }
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; }
   .figures { grid-template-columns: 1fr 1fr; gap: 0.5rem; }
@@ -53,9 +59,10 @@ size_t characterAt(const std::string &text, size_t i)
   if (first < 0x80) {
     return first >= 0x20 && first != 0x7f ? 1 : 0;
   }
-  const size_t length = first >= 0xC2 && first < 0xE0
-                            ? 2
-                            : (first >= 0xE0 && first < 0xF0 ? 3 : (first >= 0xF0 && first < 0xF5 ? 4 : 0));
+  if (first < 0xC2 || first > 0xF4) {
+    return 0;
+  }
+  const size_t length = first < 0xE0 ? 2 : (first < 0xF0 ? 3 : 4);
   for (size_t k = 1; k < length; ++k) {
     if ((byte(i + k) & 0xC0) != 0x80) {
       return 0;
@@ -89,11 +96,14 @@ std::string escaped(const std::string &text)
   return html;
 }
 
-void replaceAll(std::string &text, const std::string &from, const std::string &to)
+std::string replaced(const std::string &text, const std::string &from, const std::string &to)
 {
-  for (size_t i = text.find(from); i != std::string::npos; i = text.find(from, i + to.size())) {
-    text.replace(i, from.size(), to);
+  std::string result;
+  size_t begin = 0;
+  for (size_t i; (i = text.find(from, begin)) != std::string::npos; begin = i + from.size()) {
+    result.append(text, begin, i - begin).append(to);
   }
+  return result.append(text, begin, std::string::npos);
 }
 
 //! The picture as an element of the page: without prologue, and with ids that no other figure has.
@@ -101,19 +111,19 @@ std::string inlined(const vpReportFigure &figure)
 {
   const size_t begin = figure.svg.find("<svg");
   std::string svg = begin == std::string::npos ? std::string() : figure.svg.substr(begin);
-  replaceAll(svg, "\n xmlns:xlink=\"http://www.w3.org/1999/xlink\"", ""); // HTML's own href does
-  replaceAll(svg, "xlink:href=", "href=");
+  svg = replaced(svg, "\n xmlns:xlink=\"http://www.w3.org/1999/xlink\"", ""); // HTML's own href does
+  svg = replaced(svg, "xlink:href=", "href=");
   for (const std::string quote : {"'", "\""}) {
-    replaceAll(svg, " id=" + quote, " id=" + quote + figure.name + "-");
-    replaceAll(svg, "href=" + quote + "#", "href=" + quote + "#" + figure.name + "-");
+    svg = replaced(svg, " id=" + quote, " id=" + quote + figure.name + "-");
+    svg = replaced(svg, "href=" + quote + "#", "href=" + quote + "#" + figure.name + "-");
   }
-  replaceAll(svg, "url(#", "url(#" + figure.name + "-");
+  svg = replaced(svg, "url(#", "url(#" + figure.name + "-");
   return svg;
 }
 
 std::string html(const vpReportTable &table)
 {
-  std::string text = "<section>\n<h2>" + escaped(table.heading) + "</h2>\n<div class=\"scroll\"><table>\n";
+  std::string text = "<section>\n<h3>" + escaped(table.heading) + "</h3>\n<div class=\"scroll\"><table>\n";
   std::string head;
   bool headed = false;
   for (const std::string &column : table.columns) {
@@ -141,7 +151,7 @@ std::string tile(const std::string &value, const std::string &meaning)
 std::string tiles(const vpEvaluation &evaluation)
 {
   const auto millimetres = [](double metres) {
-    std::array<char, 400> buffer;
+    std::array<char, 64> buffer;
     std::snprintf(buffer.data(), buffer.size(), "%.3g mm", 1000 * metres);
     return std::string(buffer.data());
   };
@@ -185,10 +195,11 @@ std::string vpHtmlReport(const std::string &title, const std::vector<std::string
     }
     page += "</div>\n";
   }
+  page += "<h2>Numbers</h2>\n<div class=\"tables\">\n";
   for (const vpReportTable &table : vpTablesOf(evaluation)) {
     page += html(table);
   }
-  return page + "</main>\n</body>\n</html>\n";
+  return page + "</div>\n</main>\n</body>\n</html>\n";
 }
 
 END_VISP_NAMESPACE

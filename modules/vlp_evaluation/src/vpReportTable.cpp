@@ -15,8 +15,9 @@ namespace
 {
 std::string number(const char *format, double value)
 {
-  std::array<char, 400> buffer; // of %f every double fits
-  std::snprintf(buffer.data(), buffer.size(), format, value);
+  constexpr double largest = 1e12; // beyond it digits say nothing
+  std::array<char, 64> buffer;
+  std::snprintf(buffer.data(), buffer.size(), std::abs(value) < largest ? format : "%.6g", value);
   const bool zero =
       buffer[0] == '-' && std::string(buffer.data()).find_first_of("123456789") == std::string::npos;
   return zero ? buffer.data() + 1 : buffer.data(); // no -0.000

@@ -45,6 +45,7 @@ class VISP_EXPORT vpErrorDistribution
 {
 public:
   //! Bins of a round width (1, 2 or 5 times a power of ten), about 20 of them up to the largest error.
+  //! \throw vpException (badValue) where an error is negative or not finite.
   explicit vpErrorDistribution(std::vector<double> errors);
 
   //! Sorted.

@@ -82,7 +82,7 @@ struct VISP_EXPORT vpEvaluation {
     alignment their covariances belong to another map, and no consistency is stated. Neither do fixes count
     there that are ambiguous, or have no sigma above 0.
     \return Without any pair of poses, what the log says and 0 for all errors.
-    \throw vpException (badValue) where the longest gap is not above 0.
+    \throw vpException (badValue) where the longest gap is not above 0, or an error is beyond all numbers.
   */
   static vpEvaluation of(const vpTrajectory &truth, const vpTrajectory &estimate,
                          const vpFixLog *fixes = nullptr,

@@ -17,8 +17,8 @@ struct VISP_EXPORT vpFigure {
   std::string name; // of its files, without suffix: scatter, track, pmf, cdf, error-over-time
   std::string caption;
   std::string body; // gnuplot script without the terminal
-  int width = 640;  // px of the SVG; the PNG has twice as many
-  int height = 480;
+  int width = 560;  // px of the SVG; the PNG has twice as many
+  int height = 420;
 
   //! The bytes of a PNG file. \throw vpException as vpGnuplot::draw.
   std::string png() const;
@@ -29,7 +29,7 @@ struct VISP_EXPORT vpFigure {
 
 /*!
   The paper's figures of an evaluation with one pair or more: errors with the dispersion circle, the track,
-  PMF, CDF, and errors over time. Maps have axes of equal scale. Of more than 4000 points some 2000 stretches
+  PMF, CDF, and errors over time. Maps have axes of equal scale. Of more than 2000 points some 1000 stretches
   are shown, by their first and their worst point.
 */
 VISP_EXPORT std::vector<vpFigure> vpFiguresOf(const vpEvaluation &evaluation);

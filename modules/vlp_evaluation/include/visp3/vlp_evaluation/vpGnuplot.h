@@ -28,8 +28,9 @@ public:
   static std::string draw(const std::string &script);
 
   /*!
-    \e text as a string of a script, in which nothing is special: single quotes, control characters as blanks.
-    Markup is on in gnuplot unless the terminal is set `noenhanced`.
+    \e text (UTF-8) as a string of a script, in which nothing is special: in single quotes, those in it as the
+    typographic ones, control characters as blanks. Markup is on in gnuplot unless the terminal is set
+    `noenhanced`.
   */
   static std::string quoted(const std::string &text);
 };
