@@ -115,6 +115,8 @@ vpExitCode vpSimulate(const vpSimulateOptions &options)
   if (options.typical) {
     scenario.useTypicalRig();
   }
+  scenario.frameRate /= static_cast<double>(options.every);
+  scenario.frames = (scenario.frames + options.every - 1) / options.every;
   const size_t total = options.frames > 0 ? std::min(options.frames, scenario.frames) : scenario.frames;
   scenario.frames = total;
   NewFolder folder(options.out);

@@ -19,6 +19,7 @@ struct vpSimulateOptions {
   std::uint64_t seed = 1;
   std::string format = "png";
   std::size_t frames = 0; // the first so many; 0: all
+  std::size_t every = 1;  // of the camera's frames only each so manieth
   bool typical = false;   // rig errors as vpScenario::useTypicalRig() draws them
 
   //! \return False where the help was asked for and is printed. \throw vpException on bad usage.
