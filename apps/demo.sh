@@ -1,38 +1,29 @@
 #!/usr/bin/env bash
-# From a fresh machine to a robot's positions: installs what is missing, builds Release, locates the robot in each frame
-# of the recorded run data/paper-room and shows what came out. May be run any number of times.
+# From a fresh machine to a robot's positions: installs what is missing, builds Release, simulates the paper's run A under
+# four blinking lamps, locates the robot in each frame, holds it against the truth and shows the report. May be run any
+# number of times.
 set -euo pipefail
 export LC_ALL=C
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-run=data/paper-room
+scenario=data/scenarios/paper-a.yaml
 out=build/demo
 
 main_job()
 {
-  build/release/bin/vlp-locate --run "$run" --poses "$out/poses.tum" --fixes "$out/fixes.csv" --seen "$out/seen.csv" \
+  local bin=build/release/bin
+  "$bin/vlp-simulate" --scenario "$scenario" --every 24 --out "$out/run"
+  "$bin/vlp-locate" --run "$out/run" --poses "$out/poses.tum" --fixes "$out/fixes.csv" --seen "$out/seen.csv" \
     --overlay "$out/overlay"
+  "$bin/vlp-evaluate" --truth "$out/run/truth.tum" --fixes "$out/fixes.csv" --out "$out/report" \
+    --title "Run A of the paper, simulated"
 }
 
-# The fixes, each with its distance from where the robot truly was.
-table()
-{
-  awk '
-    BEGIN { degrees = 45 / atan2(1, 1); FS = "[ ,]"
-            printf "%8s %9s %9s %9s %10s %9s  %s\n", "time s", "x m", "y m", "yaw deg", "sigma mm", "error mm", "lamps" }
-    FNR == 1 || /^#/ { next }
-    NR == FNR        { x[$1 + 0] = $2; y[$1 + 0] = $3; next }
-    $14 == "none"    { printf "%8.2f  no position\n", $1; next }
-    { printf "%8.2f %9.4f %9.4f %9.3f %10.2f %9.2f  %s\n", $1, $2, $3, $7 * degrees,
-             1000 * sqrt($8 ^ 2 + $9 ^ 2), 1000 * sqrt(($2 - x[$1 + 0]) ^ 2 + ($3 - y[$1 + 0]) ^ 2), $13 }
-  ' "$run/truth.tum" "$out/fixes.csv"
-}
-
-show() # PICTURE, where there is a screen and a program for it
+show() # FILE, where there is a screen and a program for it
 {
   [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || return 0
   local viewer
-  for viewer in xdg-open eog feh display; do
+  for viewer in xdg-open firefox chromium; do
     if command -v "$viewer" >/dev/null; then
       "$viewer" "$1" >/dev/null 2>&1 &
       return 0
@@ -50,9 +41,8 @@ cmake --build --preset release "${quiet[@]}"
 
 main_job
 echo
-table
-echo
-echo "What was seen in each frame: $out/overlay/*.png"
-echo "Poses (TUM), fixes and lamps seen (CSV): $out"
-pictures=("$out"/overlay/*.png)
-show "${pictures[0]}"
+echo "The report, with its figures:    $out/report/report.html"
+echo "What was seen in each frame:     $out/overlay/*.png"
+echo "Frames and truth:                $out/run"
+echo "Poses (TUM), fixes, lamps (CSV): $out"
+show "$out/report/report.html"

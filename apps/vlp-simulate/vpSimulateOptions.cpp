@@ -44,6 +44,9 @@ bool vpSimulateOptions::parse(int argc, char **argv)
   vpAddChoice(app, "--format", format, {"png", "pgm"},
               "of the pictures; pgm is quicker and larger; default png");
   app.add_option("--frames", frames, "only the first N frames")->type_name("N")->check(CLI::PositiveNumber);
+  app.add_option("--every", every, "only every N-th frame of the camera")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
   app.add_flag(
       "--typical", typical,
       "draw the errors of a typical rig, unknown to the robot: camera and lamps off by 0.15 degree of roll "
