@@ -7,8 +7,8 @@
 
 /*!
   \file slowRollingShutter.h
-  What a rolling-shutter camera sees, by brute force and without any formula of the library: time in steps of 0.1 us, areas by
-  16 x 16 points a pixel, the blur as a sum over those points.
+  What a rolling-shutter camera sees, by brute force and without any formula of the library: time in steps of
+  0.1 us, areas by 16 x 16 points a pixel, the blur as a sum over those points.
 */
 
 #include <algorithm>
@@ -24,12 +24,12 @@ struct SlowRollingShutter {
   vpSimulatedCamera camera;
   vpSimulatedScene scene;
   vpRollingShutterRenderer::Poses wMc;
-  double frameTime = 0;  // s
-  bool moving = false;   // the pose changes during an exposure
+  double frameTime = 0;      // s
+  bool moving = false;       // the pose changes during an exposure
   std::vector<double> phase; // periods, of each lamp at time 0
 
-  static constexpr int cells = 16;        // of a pixel, along each side
-  static constexpr double step = 1e-7;    // s
+  static constexpr int cells = 16;         // of a pixel, along each side
+  static constexpr double step = 1e-7;     // s
   static constexpr double together = 5e-6; // s, that a moving lamp is drawn in one place for
 
   //! Whether a lamp shines at a time, straight from the words of vpModulation.
@@ -64,7 +64,8 @@ struct SlowRollingShutter {
     return bent * (low / bent.norm());
   }
 
-  //! What a point of the sensor sees of a lamp, where the camera stands at time t: place in the lamp's own axes (m), cosine.
+  //! What a point of the sensor sees of a lamp, where the camera stands at time t: place in the lamp's own
+  //! axes (m), cosine.
   Eigen::Vector2d inLamp(const vpLamp &lamp, const vpHomogeneousMatrix &M, const Eigen::Vector2d &ray,
                          double &cosine) const
   {
@@ -79,7 +80,8 @@ struct SlowRollingShutter {
     return {c * hit.x() + s * hit.y(), -s * hit.x() + c * hit.y()};
   }
 
-  double brightness(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M, const Eigen::Vector2d &ray) const
+  double brightness(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M,
+                    const Eigen::Vector2d &ray) const
   {
     double cosine;
     const Eigen::Vector2d at = inLamp(lamp.lamp, M, ray, cosine);
@@ -92,14 +94,16 @@ struct SlowRollingShutter {
     return lamp.level * rim * std::pow(cosine, order - 1);
   }
 
-  //! Weight of each cell about a pixel: its own square, blurred. The first cell lies \e margin pixels before it.
+  //! Weight of each cell about a pixel: its own square, blurred. The first cell lies \e margin pixels before
+  //! it.
   std::vector<double> weights(int margin) const
   {
     std::vector<double> weight(size_t((2 * margin + 1) * cells), 0.0);
     for (int k = 0; k < int(weight.size()); ++k)
       for (int own = margin * cells; own < (margin + 1) * cells; ++own) {
         const double d = double(k - own) / cells;
-        weight[size_t(k)] += camera.blur > 0 ? std::exp(-0.5 * d * d / (camera.blur * camera.blur)) : (k == own);
+        weight[size_t(k)] +=
+            camera.blur > 0 ? std::exp(-0.5 * d * d / (camera.blur * camera.blur)) : (k == own);
       }
     double sum = 0;
     for (double w : weight)
@@ -109,9 +113,10 @@ struct SlowRollingShutter {
     return weight;
   }
 
-  //! Brightness of each cell from sensor point (u, v) on: that of its middle, of 8 x 8 points where its corners differ.
-  cv::Mat_<double> fineLight(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M, double u, double v, int rows,
-                             int columns) const
+  //! Brightness of each cell from sensor point (u, v) on: that of its middle, of 8 x 8 points where its
+  //! corners differ.
+  cv::Mat_<double> fineLight(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M, double u, double v,
+                             int rows, int columns) const
   {
     auto at = [&](double x, double y) { return brightness(lamp, M, ray(u + x / cells, v + y / cells)); };
     cv::Mat_<double> corner(rows + 1, columns + 1), fine(rows, columns);
@@ -120,7 +125,8 @@ struct SlowRollingShutter {
         corner(y, x) = at(x, y);
     for (int y = 0; y < rows; ++y)
       for (int x = 0; x < columns; ++x) {
-        const int in = (corner(y, x) > 0) + (corner(y, x + 1) > 0) + (corner(y + 1, x) > 0) + (corner(y + 1, x + 1) > 0);
+        const int in =
+            (corner(y, x) > 0) + (corner(y, x + 1) > 0) + (corner(y + 1, x) > 0) + (corner(y + 1, x + 1) > 0);
         fine(y, x) = 0;
         for (int k = 0; k < 64 && in > 0 && in < 4; ++k)
           fine(y, x) += at(x + (k % 8 + 0.5) / 8, y + (k / 8 + 0.5) / 8) / 64;
@@ -135,8 +141,9 @@ struct SlowRollingShutter {
   {
     const int width = int(camera.rig.width), margin = int(std::ceil(5 * camera.blur));
     const std::vector<double> weight = weights(margin);
-    const cv::Mat_<double> fine = fineLight(lamp, M, -margin - 0.5, first - margin - 0.5,
-                                            (last - first + 1 + 2 * margin) * cells, (width + 2 * margin) * cells);
+    const cv::Mat_<double> fine =
+        fineLight(lamp, M, -margin - 0.5, first - margin - 0.5, (last - first + 1 + 2 * margin) * cells,
+                  (width + 2 * margin) * cells);
     cv::Mat_<double> light(last - first + 1, width, 0.0);
     for (int v = 0; v < light.rows; ++v) {
       std::vector<double> column(size_t(fine.cols), 0.0);
@@ -168,19 +175,36 @@ struct SlowRollingShutter {
     return double(count) / double(steps);
   }
 
-  //! Halo of the lens and glow of the ceiling, the camera standing still.
-  double scattered(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M, int u, int v) const
+  //! Points of the sensor, four a pixel, that see a lamp; those beside the picture, too.
+  std::vector<Eigen::Vector2d> pointsOf(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M) const
   {
-    double sum = 0, cosine;
+    static const double beside = 100; // px
+    std::vector<Eigen::Vector2d> points;
+    for (double y = -beside; y < camera.rig.height + beside; y += 0.5)
+      for (double x = -beside; x < camera.rig.width + beside; x += 0.5)
+        if (brightness(lamp, M, ray(x, y)) > 0)
+          points.emplace_back(x, y);
+    return points;
+  }
+
+  //! Halo of the lens and glow of the ceiling on each pixel, the camera standing still.
+  cv::Mat_<double> scattered(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M) const
+  {
+    cv::Mat_<double> light(int(camera.rig.height), int(camera.rig.width), 0.0);
+    if (camera.haloShare <= 0 && scene.ceilingShare <= 0)
+      return light;
+    const std::vector<Eigen::Vector2d> points = pointsOf(lamp, M);
     const double sigma = camera.haloRadius;
-    if (camera.haloShare > 0)
-      for (double y = -100; y < camera.rig.height + 100.; y += 0.5) // the lamp may lie beside the picture
-        for (double x = -100; x < camera.rig.width + 100.; x += 0.5)
-          if (brightness(lamp, M, ray(x, y)) > 0)
-            sum += 0.25 * std::exp(-0.5 * ((x - u) * (x - u) + (y - v) * (y - v)) / (sigma * sigma));
-    sum *= camera.haloShare / (2 * M_PI * sigma * sigma);
-    const double d = inLamp(lamp.lamp, M, ray(u, v), cosine).norm() / scene.ceilingRadius;
-    return lamp.level * (sum + scene.ceilingShare / std::pow(1 + d * d, 2));
+    for (int v = 0; v < light.rows; ++v)
+      for (int u = 0; u < light.cols; ++u) {
+        double sum = 0, cosine;
+        for (const Eigen::Vector2d &point : points)
+          sum += 0.25 * std::exp(-0.5 * (point - Eigen::Vector2d(u, v)).squaredNorm() / (sigma * sigma));
+        sum *= camera.haloShare / (2 * M_PI * sigma * sigma);
+        const double d = inLamp(lamp.lamp, M, ray(u, v), cosine).norm() / scene.ceilingRadius;
+        light(v, u) = lamp.level * (sum + scene.ceilingShare / std::pow(1 + d * d, 2));
+      }
+    return light;
   }
 
   //! Grey values before noise, saturation and rounding, of a picture that is not resized.
@@ -202,17 +226,14 @@ struct SlowRollingShutter {
           }
         continue;
       }
-      const cv::Mat_<double> light = still(lamp, wMc(frameTime), 0, height - 1);
+      const vpHomogeneousMatrix M = wMc(frameTime);
+      const cv::Mat_<double> light = still(lamp, M, 0, height - 1) + scattered(lamp, M);
       std::vector<double> shares;
       for (int line = 0; line < (columns ? width : height); ++line)
         shares.push_back(litShare(k, start(line), exposure));
       for (int v = 0; v < height; ++v)
-        for (int u = 0; u < width; ++u) {
-          double add = light(v, u);
-          if (camera.haloShare > 0 || scene.ceilingShare > 0)
-            add += scattered(lamp, wMc(frameTime), u, v);
-          grey(v, u) += add * shares[size_t(columns ? u : v)];
-        }
+        for (int u = 0; u < width; ++u)
+          grey(v, u) += light(v, u) * shares[size_t(columns ? u : v)];
     }
     for (int v = 0; v < height; ++v)
       for (int u = 0; u < width; ++u)
