@@ -46,7 +46,8 @@ public:
     return {m_x(line, sample), m_y(line, sample)};
   }
 
-  //! Sensor pixel at which a point of the camera frame (m) is seen. \return False where it is not before the camera.
+  //! Sensor pixel at which a point of the camera frame (m) is seen. \return False where it is not before the camera, or
+  //! farther off its axis than the lens model holds.
   bool project(const Eigen::Vector3d &point, Eigen::Vector2d &pixel) const;
 
   //! Lines and samples (x: samples, y: lines) whose pixels lie within the box, clipped to the grid.

@@ -51,7 +51,7 @@ public:
 
   /*!
     The picture whose sensor's first line begins its exposure at \e timestamp, s. \param seed Of the noise; the same
-    seed gives the same bytes. \throw vpException (badValue) where a lamp's size is unknown.
+    seed gives the same bytes. \throw vpException (badValue) where a lamp's size is unknown or a person has no path.
   */
   void render(const vpSimulatedScene &scene, const Poses &wMc, double timestamp, std::uint64_t seed,
               vpImage<unsigned char> &I) const;
