@@ -134,8 +134,14 @@ TEST(RollingShutterRenderer, CameraThatLeans)
 {
   Scene scene;
   scene.pose.insert(vpRotationMatrix(0.15, -0.1, 0.4));
-  scene.camera.rig.camera.initPersProjWithoutDistortion(1250, 1250, -60, 230);
+  const Eigen::Vector3d &lamp = scene.lamp().lamp.position;
+  const vpColVector seen = scene.pose.inverse() * vpColVector(std::vector<double>{lamp.x(), lamp.y(), lamp.z(), 1});
+  scene.camera.rig.camera.initPersProjWithoutDistortion(1250, 1250, 43.2 - 1250 * seen[0] / seen[2],
+                                                        35.7 - 1250 * seen[1] / seen[2]); // it is in view
   EXPECT_LT(scene.largestError("tilt"), tolerance);
+  double brightest = 0;
+  cv::minMaxLoc(scene.fast(), nullptr, &brightest);
+  EXPECT_GT(brightest, 150);
 }
 
 TEST(RollingShutterRenderer, HaloAndCeiling)
