@@ -110,6 +110,19 @@ TEST(RendererLimits, LampStraightBesideTheCameraOrBelowShowsNothing)
   }
 }
 
+//! Level with the picture on either side, above and below it. (An assertion of the standard library tells, or
+//! a sanitizer.)
+TEST(RendererLimits, LampBesideThePictureShowsNothing)
+{
+  Still still;
+  still.lamp().lamp.size = 0.01;
+  for (const Eigen::Vector2d &side : {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, 1),
+                                      Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 1)}) {
+    still.lamp().lamp.position.head<2>() = 0.1 * side;
+    EXPECT_NEAR(brightest(still.drawn()), still.scene.ambient, 1e-3) << side.transpose();
+  }
+}
+
 TEST(RendererLimits, CameraThatLooksDownSeesNoLamp)
 {
   Still still;

@@ -128,6 +128,9 @@ struct vpRollingShutterRenderer::Impl {
 void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::Rect &box, const Poses &wMc,
                                            double timestamp, cv::Mat_<float> &light) const
 {
+  if (box.empty()) {
+    return; // beside the picture, where there are no rays
+  }
   for (int line = box.y; line < box.br().y; ++line) {
     const double start = timestamp + grid.start(line);
     const vpLampLight::Exposed exposed = emitter.light->over(start, start + grid.exposure());
