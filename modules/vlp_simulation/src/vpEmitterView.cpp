@@ -13,6 +13,18 @@
 
 BEGIN_VISP_NAMESPACE
 
+namespace
+{
+//! Lengths to which a step of one pixel becomes, the longest and the shortest over all directions.
+std::pair<double, double> stretches(const Eigen::Matrix2d &gradient)
+{
+  const double sum = gradient.squaredNorm(), product = std::abs(gradient.determinant());
+  const double root = std::sqrt(std::max(0.0, sum * sum - 4 * product * product));
+  const double longest = std::sqrt(0.5 * (sum + root));
+  return {longest, longest > 0 ? product / longest : 0};
+}
+} // namespace
+
 vpEmitter::vpEmitter(const vpSimulatedLamp &simulated)
     : centre(simulated.lamp.position), disc(simulated.lamp.shape == vpLamp::Shape::disk), level(simulated.level),
       rim(simulated.rim), light(&simulated.light)
@@ -92,15 +104,6 @@ vpPixelEdge vpEmitterShare::acrossBend(double d, const Eigen::Vector2d &normal, 
     sum.byBlur += weight * edge.byBlur;
   }
   return sum;
-}
-
-//! Lengths to which a step of one pixel becomes, the longest and the shortest over all directions.
-static std::pair<double, double> stretches(const Eigen::Matrix2d &gradient)
-{
-  const double sum = gradient.squaredNorm(), product = std::abs(gradient.determinant());
-  const double root = std::sqrt(std::max(0.0, sum * sum - 4 * product * product));
-  const double longest = std::sqrt(0.5 * (sum + root));
-  return {longest, longest > 0 ? product / longest : 0};
 }
 
 double vpEmitterShare::longestStep(const vpEmitterView &view, const Eigen::Vector2d &pixel) const

@@ -77,9 +77,9 @@ vpHomogeneousMatrix vpDrivenMotion::wMb(double time)
 std::vector<vpOdometry> vpDrivenMotion::odometry() const
 {
   const std::vector<vpOdometry> &samples = m_robot.odometrySamples(); // the world may have run ahead
-  const auto later = std::upper_bound(
-      samples.begin(), samples.end(), m_latest,
-      [](double time, const vpOdometry &sample) { return time < sample.timestamp; });
+  const auto later =
+      std::upper_bound(samples.begin(), samples.end(), m_latest,
+                       [](double time, const vpOdometry &sample) { return time < sample.timestamp; });
   return {samples.begin(), later};
 }
 

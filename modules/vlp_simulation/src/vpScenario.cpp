@@ -55,7 +55,8 @@ void readCamera(const vpYamlNode &top, vpScenario &scenario)
     scenario.rig.shutter.exposure = node.number("exposure_s", Range::positive, scenario.rig.shutter.exposure);
     static const double longest = 1; // s
     if (scenario.rig.shutter.exposure > longest) {
-      node.fail("exposure_s", vpNumberText(scenario.rig.shutter.exposure) + ", expected at most " + vpNumberText(longest));
+      node.fail("exposure_s",
+                vpNumberText(scenario.rig.shutter.exposure) + ", expected at most " + vpNumberText(longest));
     }
     wholeLines = !node.has("whole_line_exposure") || node.boolean("whole_line_exposure");
     if (node.has("halo")) {
@@ -112,7 +113,8 @@ void readDraw(const vpYamlNode &node, vpScenario::Draw &draw)
 size_t countOf(double frames, double frameRate, const vpYamlNode &node, const std::string &key)
 {
   if (!(frames <= vpScenarioYaml::mostFrames)) {
-    node.fail(key, vpNumberText(frames) + " frames, expected at most " + vpNumberText(vpScenarioYaml::mostFrames));
+    node.fail(key,
+              vpNumberText(frames) + " frames, expected at most " + vpNumberText(vpScenarioYaml::mostFrames));
   }
   const double duration = (frames - 1) / frameRate;
   if (!(duration <= vpScenarioYaml::longestRun)) {
@@ -139,8 +141,8 @@ void readFrames(const vpYamlNode &node, vpScenario &scenario)
   node.finish();
 }
 
-//! What a lamp must be like to be drawn. A camera sees lamps that hang above it; one beside or below it has no
-//! picture.
+//! What a lamp must be like to be drawn. A camera sees lamps that hang above it; one beside or below it has
+//! no picture.
 void checkLamps(const vpYamlNode &top, const vpScenario &scenario)
 {
   static const double least = 0.05;  // m
@@ -166,8 +168,9 @@ void checkLamps(const vpYamlNode &top, const vpScenario &scenario)
       }
     }
     if (scenario.draw.clocks && known.oscillatorPpm > mostPpm) {
-      top.fail("lamps", "lamp " + vpShown(known.id) + " with oscillator_ppm " + vpNumberText(known.oscillatorPpm) +
-                            ", expected at most " + vpNumberText(mostPpm) + " to draw its clock by");
+      top.fail("lamps", "lamp " + vpShown(known.id) + " with oscillator_ppm " +
+                            vpNumberText(known.oscillatorPpm) + ", expected at most " +
+                            vpNumberText(mostPpm) + " to draw its clock by");
     }
     try {
       const vpLampLight light(known.modulation);
@@ -194,7 +197,8 @@ void vpScenarioYaml::expectNear(const vpYamlNode &node, const std::string &key,
 {
   for (const double coordinate : coordinates) {
     if (!(std::abs(coordinate) <= farthest)) {
-      node.fail(key, vpNumberText(coordinate) + ", expected at most " + vpNumberText(farthest) + " m either way");
+      node.fail(key,
+                vpNumberText(coordinate) + ", expected at most " + vpNumberText(farthest) + " m either way");
     }
   }
 }

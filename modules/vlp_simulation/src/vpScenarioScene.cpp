@@ -25,8 +25,8 @@ double halfPowerOf(const vpYamlNode &node, double otherwise)
   const double angle = node.number("half_power_deg", Range::positive, otherwise / degree);
   static const double narrowest = 1; // degree
   if (angle < narrowest || angle >= 90) {
-    node.fail("half_power_deg", vpNumberText(angle) + ", expected a number from " + vpNumberText(narrowest) +
-                                    " to below 90");
+    node.fail("half_power_deg",
+              vpNumberText(angle) + ", expected a number from " + vpNumberText(narrowest) + " to below 90");
   }
   return angle * degree;
 }
