@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <set>
 #include <system_error>
+#include <vector>
 
 #include <unistd.h>
 
@@ -34,19 +35,30 @@ namespace fs = std::filesystem;
 class NewFolder
 {
 public:
-  explicit NewFolder(const std::string &name) : m_name(fs::path(name).lexically_normal())
+  explicit NewFolder(const std::string &name)
   {
+    std::error_code error;
+    m_name = fs::weakly_canonical(fs::path(name), error); // no name can be given to a link or to "."
+    if (error) {
+      throw vpException(vpException::ioError, name + ": the folder cannot be made: " + error.message());
+    }
     if (!m_name.has_filename()) { // a/b/
       m_name = m_name.parent_path();
     }
-    std::error_code error;
     if (fs::exists(m_name, error) && !(fs::is_directory(m_name, error) && fs::is_empty(m_name, error))) {
       throw vpException(vpException::ioError, name + ": exists, expected a new or empty folder");
     }
     m_written = m_name;
     m_written += ".part-" + std::to_string(getpid());
-    fs::create_directories(m_written, error);
+    for (fs::path parent = m_name.parent_path(); !parent.empty() && !fs::exists(parent, error);
+         parent = parent.parent_path()) {
+      m_parents.push_back(parent);
+    }
+    if (!fs::create_directories(m_written, error) && !error) {
+      error = std::make_error_code(std::errc::file_exists); // of a program that was killed
+    }
     if (error) {
+      removeParents();
       throw vpException(vpException::ioError, name + ": the folder cannot be made: " + error.message());
     }
   }
@@ -56,6 +68,7 @@ public:
     if (!m_written.empty()) {
       std::error_code ignored;
       fs::remove_all(m_written, ignored);
+      removeParents();
     }
   }
   NewFolder(const NewFolder &) = delete;
@@ -75,7 +88,16 @@ public:
   }
 
 private:
+  void removeParents() const
+  {
+    for (const fs::path &parent : m_parents) {
+      std::error_code ignored; // somebody else may have put something there
+      fs::remove(parent, ignored);
+    }
+  }
+
   fs::path m_name, m_written;
+  std::vector<fs::path> m_parents; // that were made for it, the innermost first
 };
 
 std::string pictureName(size_t index, const std::string &format)
@@ -119,9 +141,9 @@ vpExitCode vpSimulate(const vpSimulateOptions &options)
   scenario.frames = (scenario.frames + options.every - 1) / options.every;
   const size_t total = options.frames > 0 ? std::min(options.frames, scenario.frames) : scenario.frames;
   scenario.frames = total;
+  vpInterrupt::install(); // from here on there is something to take away
   NewFolder folder(options.out);
   vpSimulation simulation(scenario, options.seed);
-  vpInterrupt::install();
   vpProgressBar progress(total);
   vpAtomicFile list(folder.file("frames.csv"));
   list.stream() << "timestamp_s,file\n";

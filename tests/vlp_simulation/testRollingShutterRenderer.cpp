@@ -145,6 +145,9 @@ TEST(RollingShutterRenderer, CameraThatLeans)
   scene.camera.rig.camera.initPersProjWithoutDistortion(1250, 1250, 42 - 1250 * lamp.x() / lamp.z(),
                                                         38 - 1250 * lamp.y() / lamp.z());
   EXPECT_LT(scene.largestError("tilt"), tolerance);
+  double brightest = 0;
+  cv::minMaxLoc(scene.fast(), nullptr, &brightest);
+  EXPECT_GT(brightest, 150);
 }
 
 TEST(RollingShutterRenderer, HaloAndCeiling)

@@ -5,6 +5,9 @@
 #ifndef vpEmitterView_h
 #define vpEmitterView_h
 
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/Core>
 #include <visp3/core/vpHomogeneousMatrix.h>
 #include <visp3/vlp_core/vpPixelEdge.h>
@@ -38,7 +41,8 @@ class vpEmitterView
 public:
   vpEmitterView(const vpEmitter &emitter, const vpHomogeneousMatrix &wMc);
 
-  //! Coordinates in the emitter's plane (m) of what the ray sees of it. \return False where it sees nothing of that plane.
+  //! Coordinates in the emitter's plane (m) of what the ray sees of it. \return False where it sees nothing
+  //! of that plane.
   bool at(const Eigen::Vector2d &ray, Eigen::Vector2d &inPlane) const
   {
     const Eigen::Vector3d r(ray.x(), ray.y(), 1);
@@ -54,6 +58,12 @@ public:
   double cosine(const Eigen::Vector2d &ray) const
   {
     return std::abs(m_normal.dot(Eigen::Vector3d(ray.x(), ray.y(), 1))) / std::sqrt(ray.squaredNorm() + 1);
+  }
+
+  //! m, from the camera to a point of the emitter's plane.
+  double distance(const Eigen::Vector2d &inPlane) const
+  {
+    return std::hypot((inPlane - m_foot).norm(), m_height);
   }
 
   //! Point of the emitter's plane, in the camera frame.
@@ -83,8 +93,14 @@ public:
   //! px, from the edge, beyond which a pixel is covered wholly or not at all.
   double band() const { return 5 * m_blur + 1.5; }
 
+  //! px^2, of blur and square in any direction.
+  double variance() const { return m_blur * m_blur + 1.0 / 12; }
+
   double at(const vpEmitter &emitter, const vpEmitterView &view, const Eigen::Vector2d &pixel,
             const Eigen::Vector2d &inPlane) const;
+
+  //! m of the emitter's plane that a step of one pixel there is at most.
+  double longestStep(const vpEmitterView &view, const Eigen::Vector2d &pixel) const;
 
 private:
   static constexpr double sharpest = 0.02; // px of blur; nothing shows any less
@@ -93,9 +109,14 @@ private:
   //! Plane coordinates seen half a pixel to either side, in u and v.
   struct Neighbours {
     Eigen::Vector2d right, left, down, up;
+
+    //! Of the plane coordinates by u and v, m per pixel.
+    Eigen::Matrix2d gradient() const { return (Eigen::Matrix2d() << right - left, down - up).finished(); }
   };
   Neighbours around(const vpEmitterView &view, const Eigen::Vector2d &pixel) const;
   vpPixelEdge acrossBend(double d, const Eigen::Vector2d &normal, double bend, double spread) const;
+  double smallDisc(const vpEmitter &emitter, const Eigen::Vector2d &inPlane,
+                   const Eigen::Matrix2d &gradient) const;
   double disc(const vpEmitter &emitter, const Eigen::Vector2d &inPlane, const Neighbours &near) const;
   double rectangle(const vpEmitter &emitter, const Eigen::Vector2d &inPlane, const Neighbours &near) const;
 

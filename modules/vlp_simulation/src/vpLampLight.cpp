@@ -9,6 +9,7 @@
 #include <string>
 
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -66,18 +67,30 @@ vpLampLight::vpLampLight(const vpModulation &modulation, double rate, double pha
     : m_frequency(modulation.repetitionFrequency() * rate), m_phase(phase - std::floor(phase)),
       m_lit(litStretches(modulation))
 {
-  if (modulation.kind != vpModulation::Kind::unmodulated && !(m_frequency > 0)) {
-    throw vpException(vpException::badValue, "lamp light: it repeats at " + std::to_string(m_frequency) +
-                                                 " Hz, expected more than 0");
+  static const double fastest = 1e9; // Hz; the square of the periods in an exposure still has digits to spare
+  if (modulation.kind != vpModulation::Kind::unmodulated && !(m_frequency > 0 && m_frequency <= fastest)) {
+    throw vpException(vpException::badValue, "lamp light: it repeats at " + vpNumberText(m_frequency) +
+                                                 " Hz, expected more than 0 and at most " +
+                                                 vpNumberText(fastest));
+  }
+  for (size_t k = 1; k < m_lit.size(); ++k) {
+    if (m_lit[k].first < m_lit[k - 1].second) {
+      throw vpException(vpException::badValue,
+                        "lamp light: phase difference " + vpNumberText(modulation.phaseDifference) +
+                            " with duty " + vpNumberText(modulation.duty.value_or(0.5)) +
+                            ", expected at least half the duty, or the two pulses overlap");
+    }
   }
 }
 
-//! Adds sign times the light from \e from until \e to (s), and its moment about time 0 (s^2).
-void vpLampLight::addLight(double from, double to, double sign, double &sum, double &moment) const
+//! Adds sign times the light from \e from until \e to (s), and its moment about \e pivot (s^2), which is
+//! near: about time 0, the squares of hours would take the digits of microseconds.
+void vpLampLight::addLight(double from, double to, double sign, double pivot, double &sum,
+                           double &moment) const
 {
   if (m_frequency <= 0) {
     sum += sign * (to - from);
-    moment += sign * 0.5 * (to * to - from * from);
+    moment += sign * (to - from) * (0.5 * (from + to) - pivot);
     return;
   }
   // Counted from the period that the stretch begins in: after hours, digits would be lost.
@@ -88,27 +101,42 @@ void vpLampLight::addLight(double from, double to, double sign, double &sum, dou
   integrate(m_lit, start, sumFrom, momentFrom);
   integrate(m_lit, start + (to - from) * m_frequency, sumTo, momentTo);
   const double light = (sumTo - sumFrom) / m_frequency;
-  const double zero = from - start / m_frequency; // s, where that period begins
+  const double zero = from - pivot - start / m_frequency; // s, where that period begins
   sum += sign * light;
   moment += sign * (zero * light + (momentTo - momentFrom) / (m_frequency * m_frequency));
+}
+
+void vpLampLight::addDark(double from, double to)
+{
+  // Kept apart from each other: what two of them share would be taken away twice.
+  for (auto dark = m_dark.begin(); dark != m_dark.end();) {
+    if (dark->first <= to && from <= dark->second) {
+      from = std::min(from, dark->first);
+      to = std::max(to, dark->second);
+      dark = m_dark.erase(dark);
+    } else {
+      ++dark;
+    }
+  }
+  m_dark.emplace_back(from, to);
 }
 
 vpLampLight::Exposed vpLampLight::over(double from, double to) const
 {
   double sum = 0, moment = 0; // moment about from
   const double middle = 0.5 * (from + to);
-  addLight(from, to, 1, sum, moment);
+  addLight(from, to, 1, from, sum, moment);
   for (const auto &[begin, end] : m_dark) {
     const double first = std::max(from, begin), last = std::min(to, end);
     if (first < last) {
-      addLight(first, last, -1, sum, moment);
+      addLight(first, last, -1, from, sum, moment);
     }
   }
   const double exposure = to - from;
   if (!(sum > 1e-9 * exposure)) {
     return {0, middle};
   }
-  return {std::min(sum / exposure, 1.0), std::clamp(moment / sum, from, to)};
+  return {std::min(sum / exposure, 1.0), std::clamp(from + moment / sum, from, to)};
 }
 
 END_VISP_NAMESPACE

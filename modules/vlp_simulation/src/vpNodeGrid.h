@@ -13,12 +13,14 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! Every so many lines and samples of a picture, the last ones among them: what changes slowly is known there.
+//! Every so many lines and samples of a picture, the last ones among them: what changes slowly is known
+//! there.
 struct vpNodeGrid {
   std::vector<int> lines, samples;
 
   vpNodeGrid() = default;
-  vpNodeGrid(const cv::Size &picture, int step) : lines(nodes(picture.height, step)), samples(nodes(picture.width, step))
+  vpNodeGrid(const cv::Size &picture, int step)
+      : lines(nodes(picture.height, step)), samples(nodes(picture.width, step))
   {
   }
 

@@ -34,7 +34,7 @@ vpHomogeneousMatrix vpStationMotion::wMb(double time)
 
 vpDrivenMotion::vpDrivenMotion(const vpSimulatorTurtleBot3Settings &robot,
                                const std::vector<vpTimedVelocity> &commands)
-    : m_robot(robot), m_commands(commands), m_nextTime(robot.startTime)
+    : m_robot(robot), m_commands(commands), m_start(robot.startTime), m_latest(m_start), m_nextTime(m_start)
 {
   if (commands.empty()) {
     throw vpException(vpException::badValue, "drive: no commands, expected one or more");
@@ -70,7 +70,17 @@ vpHomogeneousMatrix vpDrivenMotion::wMb(double time)
     static const double ahead = 0.1; // s, since a picture asks for many times, not all in order
     advance(time + ahead);
   }
-  return m_robot.wMb(std::max(time, 0.0));
+  m_latest = std::max(m_latest, time);
+  return m_robot.wMb(std::max(time, m_start));
+}
+
+std::vector<vpOdometry> vpDrivenMotion::odometry() const
+{
+  const std::vector<vpOdometry> &samples = m_robot.odometrySamples(); // the world may have run ahead
+  const auto later =
+      std::upper_bound(samples.begin(), samples.end(), m_latest,
+                       [](double time, const vpOdometry &sample) { return time < sample.timestamp; });
+  return {samples.begin(), later};
 }
 
 END_VISP_NAMESPACE

@@ -60,6 +60,13 @@ cv::Mat_<float> vignette(const vpSensorGrid &grid, double exponent)
   return share;
 }
 
+//! What the sensor can tell apart. No number beyond, nor one that is none, may become an index or wrap
+//! around.
+float clipped(float grey)
+{
+  return grey > 0 ? std::min(grey, 255.f) : 0.f;
+}
+
 //! The part of the grid that the emitter may be seen in.
 cv::Rect boxOf(const vpEmitter &emitter, const std::vector<vpHomogeneousMatrix> &wMc,
                const vpSensorGrid &grid, double margin)
@@ -125,6 +132,9 @@ struct vpRollingShutterRenderer::Impl {
 void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::Rect &box, const Poses &wMc,
                                            double timestamp, cv::Mat_<float> &light) const
 {
+  if (box.empty()) {
+    return; // beside the picture, where there are no rays
+  }
   for (int line = box.y; line < box.br().y; ++line) {
     const double start = timestamp + grid.start(line);
     const vpLampLight::Exposed exposed = emitter.light->over(start, start + grid.exposure());
@@ -141,7 +151,14 @@ void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::R
     const int edges[2] = {box.x, box.br().x - 1};
     const bool seen = view.at(grid.ray(line, edges[0]), first) && view.at(grid.ray(line, edges[1]), last);
     const double span = (grid.pixel(line, edges[1]) - grid.pixel(line, edges[0])).norm();
-    const double band = seen && span > 0 ? 1.5 * share.band() * (last - first).norm() / span : 1e9;
+    double band = 1e9, spread = 0; // m, m^2
+    if (seen && span > 0) {
+      const Eigen::Vector2d between = grid.pixel(line, (edges[0] + edges[1]) / 2);
+      const double step =
+          std::max((last - first).norm() / span, share.longestStep(view, between)); // m per pixel
+      band = 1.5 * share.band() * step;
+      spread = 2 * share.variance() * step * step;
+    }
     float *row = light[line];
     for (int sample = box.x; sample < box.br().x; ++sample) {
       const Eigen::Vector2d ray = grid.ray(line, sample);
@@ -158,7 +175,7 @@ void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::R
       if (outside > -band) {
         covered = share.at(emitter, view, grid.pixel(line, sample), at);
       } else if (emitter.rim > 0) {
-        covered -= emitter.rim * at.squaredNorm() / (emitter.halfX * emitter.halfX);
+        covered -= emitter.rim * (at.squaredNorm() + spread) / (emitter.halfX * emitter.halfX);
       }
       if (emitter.exponent != 0) {
         covered *= std::pow(view.cosine(ray), emitter.exponent);
@@ -241,9 +258,9 @@ cv::Mat_<unsigned char> vpRollingShutterRenderer::Impl::digitised(const cv::Mat_
     const float *in = light[line], *normal = noise[0];
     unsigned char *out = grey[line];
     for (int sample = 0; sample < light.cols; ++sample) {
-      const float level = std::clamp(in[sample], 0.f, 255.f);
-      const float value = in[sample] + noiseOfLevel[static_cast<size_t>(level)] * normal[sample];
-      out[sample] = cv::saturate_cast<unsigned char>(value);
+      const float value =
+          in[sample] + noiseOfLevel[static_cast<size_t>(clipped(in[sample]))] * normal[sample];
+      out[sample] = cv::saturate_cast<unsigned char>(clipped(value));
     }
   }
   return grey;

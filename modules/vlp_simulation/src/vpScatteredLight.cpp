@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 BEGIN_VISP_NAMESPACE
 
@@ -22,33 +23,39 @@ double within(double x, double half, double sigma)
 class BlurredDisc
 {
 public:
-  BlurredDisc(double radius, double sigma) : m_step(0.1 * sigma)
+  BlurredDisc(double radius, double sigma) : m_step(std::max(0.1 * sigma, radius / longest))
   {
     const double reach = radius + 5 * sigma;
     static const int strips =
         48; // along the disc, by Gauss's rule for the chord's weight: no end to be missed
+    const double widest = std::asin(std::min(1.0, 6 * sigma / radius)); // rad, beyond which nothing gets here
     for (double rho = 0; rho < reach + m_step; rho += m_step) {
       double sum = 0;
       for (int k = 0; k < strips; ++k) {
         // y = radius sin(angle): the chord's end falls like a root, which this takes out of the integral.
-        const double angle = M_PI * ((k + 0.5) / strips - 0.5);
+        const double angle = 2 * widest * ((k + 0.5) / strips - 0.5);
         const double y = radius * std::sin(angle), chord = radius * std::cos(angle);
         const double density = std::exp(-0.5 * y * y / (sigma * sigma)) / (sigma * std::sqrt(2 * M_PI));
         sum += density * within(rho, chord, sigma) * chord;
       }
-      m_share.push_back(sum * M_PI / strips);
+      m_share.push_back(sum * 2 * widest / strips);
     }
   }
 
   double at(double rho) const
   {
     const double x = rho / m_step;
+    if (!(x < static_cast<double>(m_share.size() - 1))) {
+      return 0;
+    }
     const auto k = static_cast<size_t>(x);
-    return k + 1 < m_share.size() ? m_share[k] + (x - static_cast<double>(k)) * (m_share[k + 1] - m_share[k])
-                                  : 0;
+    return m_share[k] + (x - static_cast<double>(k)) * (m_share[k + 1] - m_share[k]);
   }
 
 private:
+  static constexpr double longest =
+      20000; // entries; a disc that would need more is far larger than any picture
+
   double m_step;
   std::vector<double> m_share;
 };
@@ -87,8 +94,11 @@ cv::Mat_<float> vpScatteredLight::of(const vpEmitter &emitter, const vpSimulated
   const vpEmitterView middle(emitter, wMc[wMc.size() / 2]);
   const double scale = middle.visible() ? metresPerPixel(m_grid, middle) : 0; // hardly changes during a frame
   const bool halo = m_share > 0 && scale > 0;
-  const double halfX = halo ? emitter.halfX / scale : 1, halfY = halo ? emitter.halfY / scale : 1; // px
-  const BlurredDisc disc(halfX, m_radius);
+  const double halfX = halo ? emitter.halfX / scale : 0, halfY = halo ? emitter.halfY / scale : 0; // px
+  std::optional<BlurredDisc> disc;
+  if (halo && emitter.disc) {
+    disc.emplace(halfX, m_radius);
+  }
   for (int node = 0; node < light.rows; ++node) {
     const vpEmitterView view(emitter, wMc[static_cast<size_t>(node)]);
     for (int k = 0; view.visible() && k < light.cols; ++k) {
@@ -103,8 +113,8 @@ cv::Mat_<float> vpScatteredLight::of(const vpEmitter &emitter, const vpSimulated
       }
       if (halo) {
         at /= scale; // px
-        share += m_share * (emitter.disc ? disc.at(at.norm())
-                                         : within(at.x(), halfX, m_radius) * within(at.y(), halfY, m_radius));
+        share += m_share * (disc ? disc->at(at.norm())
+                                 : within(at.x(), halfX, m_radius) * within(at.y(), halfY, m_radius));
       }
       light(node, k) = static_cast<float>(emitter.level * share);
     }

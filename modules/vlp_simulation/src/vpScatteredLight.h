@@ -16,8 +16,8 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Light of the lamps that does not come straight from them: the halo that the lens makes about each, and the glow of the ceiling
-  beside it. Both are smooth: known at nodes, linear between them.
+  Light of the lamps that does not come straight from them: the halo that the lens makes about each, and the
+  glow of the ceiling beside it. Both are smooth: known at nodes, linear between them.
 */
 class vpScatteredLight
 {

@@ -48,11 +48,16 @@ void readCamera(const vpYamlNode &top, vpScenario &scenario)
   bool wholeLines = true;
   if (top.has("camera")) {
     const vpYamlNode node = top.mapping("camera");
-    camera.blur = node.number("blur_px", Range::notNegative, camera.blur);
-    camera.vignetting = node.number("vignetting", Range::notNegative, camera.vignetting);
-    camera.readNoise = node.number("read_noise", Range::notNegative, camera.readNoise);
+    camera.blur = vpScenarioYaml::between(node, "blur_px", 0, 100, camera.blur);
+    camera.vignetting = vpScenarioYaml::between(node, "vignetting", 0, 100, camera.vignetting);
+    camera.readNoise = vpScenarioYaml::between(node, "read_noise", 0, 255, camera.readNoise);
     camera.photonsPerLevel = node.number("photons_per_level", Range::notNegative, camera.photonsPerLevel);
     scenario.rig.shutter.exposure = node.number("exposure_s", Range::positive, scenario.rig.shutter.exposure);
+    static const double longest = 1; // s
+    if (scenario.rig.shutter.exposure > longest) {
+      node.fail("exposure_s",
+                vpNumberText(scenario.rig.shutter.exposure) + ", expected at most " + vpNumberText(longest));
+    }
     wholeLines = !node.has("whole_line_exposure") || node.boolean("whole_line_exposure");
     if (node.has("halo")) {
       const vpYamlNode halo = node.mapping("halo");
@@ -71,58 +76,77 @@ void readCamera(const vpYamlNode &top, vpScenario &scenario)
   }
 }
 
-Eigen::Vector2d pair(const vpYamlNode &node, const std::string &key)
+//! Two numbers of at most so much either way.
+Eigen::Vector2d pair(const vpYamlNode &node, const std::string &key, double most)
 {
   const std::vector<double> values = node.has(key) ? node.numbers(key, 2) : std::vector<double>{0, 0};
+  for (double value : values) {
+    if (std::abs(value) > most) {
+      node.fail(key, vpNumberText(value) + ", expected two numbers from " + vpNumberText(-most) + " to " +
+                         vpNumberText(most));
+    }
+  }
   return {values[0], values[1]};
 }
 
 void readDeviation(const vpYamlNode &node, vpScenario::Deviation &deviation)
 {
-  deviation.tilt = degree * pair(node, "tilt_deg");
-  deviation.principalPoint = pair(node, "principal_point_px");
-  deviation.focalLength = node.number("focal_length", Range::positive, 1);
-  deviation.rowTime = node.number("row_time", Range::positive, 1);
+  deviation.tilt = degree * pair(node, "tilt_deg", 90);
+  deviation.principalPoint = pair(node, "principal_point_px", 1e4);
+  deviation.focalLength = vpScenarioYaml::between(node, "focal_length", 0.1, 10, 1);
+  deviation.rowTime = vpScenarioYaml::between(node, "row_time", 0.1, 10, 1);
 }
 
 void readDraw(const vpYamlNode &node, vpScenario::Draw &draw)
 {
-  draw.tilt = degree * node.number("tilt_deg", Range::notNegative, 0);
-  draw.principalPoint = node.number("principal_point_px", Range::notNegative, 0);
-  draw.focalLength = node.number("focal_length", Range::notNegative, 0);
-  draw.rowTime = node.number("row_time", Range::notNegative, 0);
-  draw.lampShift = node.number("lamp_shift_m", Range::notNegative, 0);
+  static const double most = 0.1; // a share: a draw of 5 sigma still leaves half of it
+  draw.tilt = degree * vpScenarioYaml::between(node, "tilt_deg", 0, 10, 0);
+  draw.principalPoint = vpScenarioYaml::between(node, "principal_point_px", 0, 1e3, 0);
+  draw.focalLength = vpScenarioYaml::between(node, "focal_length", 0, most, 0);
+  draw.rowTime = vpScenarioYaml::between(node, "row_time", 0, most, 0);
+  draw.lampShift = vpScenarioYaml::between(node, "lamp_shift_m", 0, 10, 0);
   draw.clocks = !node.has("clocks") || node.boolean("clocks");
-  for (const auto &[key, share] :
-       {std::pair("focal_length", draw.focalLength), std::pair("row_time", draw.rowTime)}) {
-    static const double most = 0.1; // a draw of 5 sigma still leaves half of it
-    if (share > most) {
-      node.fail(key, vpNumberText(share) + ", expected a share of at most " + vpNumberText(most));
-    }
-  }
   node.finish();
+}
+
+//! So many frames as a number of them, none too many; \e key is the field that asks for them.
+size_t countOf(double frames, double frameRate, const vpYamlNode &node, const std::string &key)
+{
+  if (!(frames <= vpScenarioYaml::mostFrames)) {
+    node.fail(key,
+              vpNumberText(frames) + " frames, expected at most " + vpNumberText(vpScenarioYaml::mostFrames));
+  }
+  const double duration = (frames - 1) / frameRate;
+  if (!(duration <= vpScenarioYaml::longestRun)) {
+    node.fail(key, "frames over " + vpNumberText(duration) + " s, expected a run of at most " +
+                       vpNumberText(vpScenarioYaml::longestRun) + " s");
+  }
+  return static_cast<size_t>(std::max(1.0, frames));
 }
 
 void readFrames(const vpYamlNode &node, vpScenario &scenario)
 {
-  scenario.frameRate = node.number("rate_hz", Range::positive);
+  node.number("rate_hz", Range::positive);
+  scenario.frameRate = vpScenarioYaml::between(node, "rate_hz", 1e-3, 1e4, 0);
   const bool count = node.has("count"), duration = node.has("duration_s");
   if (count && duration) {
     node.fail("duration_s", "beside count, expected one of them");
   }
   if (count) {
-    scenario.frames = node.wholeNumber("count", 1);
+    scenario.frames = countOf(node.wholeNumber("count", 1), scenario.frameRate, node, "count");
   } else if (duration) {
-    scenario.frames = static_cast<size_t>(
-        std::max(1.0, std::floor(node.number("duration_s", Range::positive) * scenario.frameRate)));
+    const double frames = std::floor(node.number("duration_s", Range::positive) * scenario.frameRate);
+    scenario.frames = countOf(frames, scenario.frameRate, node, "duration_s");
   }
   node.finish();
 }
 
-//! A camera sees lamps that hang above it; one beside or below it has no picture.
-void checkHeights(const vpYamlNode &top, const vpScenario &scenario)
+//! What a lamp must be like to be drawn. A camera sees lamps that hang above it; one beside or below it has
+//! no picture.
+void checkLamps(const vpYamlNode &top, const vpScenario &scenario)
 {
-  static const double least = 0.05; // m
+  static const double least = 0.05;  // m
+  static const double mostPpm = 1e5; // a draw of 8 sigma still runs forwards
   const double camera = scenario.rig.bMc[2][3];
   for (const vpScenario::Lamp &lamp : scenario.lamps) {
     const vpLamp &known = lamp.simulated.lamp;
@@ -136,9 +160,48 @@ void checkHeights(const vpYamlNode &top, const vpScenario &scenario)
       top.fail("lamps",
                "lamp " + vpShown(known.id) + " without diameter_m or size_m, expected one to draw it by");
     }
+    const Eigen::Vector3d place = known.position + lamp.shift;
+    for (const double metres : {place.x(), place.y(), place.z(), known.size}) {
+      if (!(std::abs(metres) <= vpScenarioYaml::farthest)) {
+        top.fail("lamps", "lamp " + vpShown(known.id) + " reaches to " + vpNumberText(metres) +
+                              " m, expected at most " + vpNumberText(vpScenarioYaml::farthest) + " m");
+      }
+    }
+    if (scenario.draw.clocks && known.oscillatorPpm > mostPpm) {
+      top.fail("lamps", "lamp " + vpShown(known.id) + " with oscillator_ppm " +
+                            vpNumberText(known.oscillatorPpm) + ", expected at most " +
+                            vpNumberText(mostPpm) + " to draw its clock by");
+    }
+    try {
+      const vpLampLight light(known.modulation);
+    } catch (const vpException &error) {
+      top.fail("lamps", "lamp " + vpShown(known.id) + ": " + error.getStringMessage());
+    }
   }
 }
 } // namespace
+
+double vpScenarioYaml::between(const vpYamlNode &node, const std::string &key, double least, double most,
+                               double otherwise)
+{
+  const double value = node.number(key, Range::any, otherwise);
+  if (node.has(key) && !(value >= least && value <= most)) {
+    node.fail(key, vpNumberText(value) + ", expected a number from " + vpNumberText(least) + " to " +
+                       vpNumberText(most));
+  }
+  return value;
+}
+
+void vpScenarioYaml::expectNear(const vpYamlNode &node, const std::string &key,
+                                const std::vector<double> &coordinates)
+{
+  for (const double coordinate : coordinates) {
+    if (!(std::abs(coordinate) <= farthest)) {
+      node.fail(key,
+                vpNumberText(coordinate) + ", expected at most " + vpNumberText(farthest) + " m either way");
+    }
+  }
+}
 
 vpScenario vpScenario::load(const std::string &filename)
 {
@@ -161,11 +224,11 @@ vpScenario vpScenario::load(const std::string &filename)
   if (scenario.frames == 0) {         // a last frame at the very end
     static const double early = 1e-9; // of a frame
     const double frames = scenario.makeMotion()->duration() * scenario.frameRate;
-    scenario.frames = static_cast<size_t>(
-        std::max(1.0, std::floor(frames + early) + (scenario.motion.stations.empty() ? 1 : 0)));
+    scenario.frames = countOf(std::floor(frames + early) + (scenario.motion.stations.empty() ? 1 : 0),
+                              scenario.frameRate, top, "motion");
   }
   top.finish();
-  checkHeights(top, scenario);
+  checkLamps(top, scenario);
   return scenario;
 }
 

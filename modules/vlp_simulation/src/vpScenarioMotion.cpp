@@ -30,6 +30,7 @@ void readStations(const vpYamlNode &node, double frameRate, Motion &motion)
   if (node.has("points")) {
     for (const vpYamlNode &point : node.mappings("points")) {
       const std::vector<double> at = point.numbers("at_m", 2);
+      vpScenarioYaml::expectNear(point, "at_m", at);
       motion.stations.push_back(
           place(at[0], at[1], degree * point.number("yaw_deg", Range::any, yaw / degree)));
       point.finish();
@@ -40,8 +41,14 @@ void readStations(const vpYamlNode &node, double frameRate, Motion &motion)
   } else {
     const vpYamlNode grid = node.mapping("grid");
     const std::vector<double> x = grid.numbers("x_m", 2), y = grid.numbers("y_m", 2);
+    vpScenarioYaml::expectNear(grid, "x_m", x);
+    vpScenarioYaml::expectNear(grid, "y_m", y);
     const unsigned int columns = grid.wholeNumber("columns", 1), rows = grid.wholeNumber("rows", 1);
     grid.finish();
+    if (static_cast<double>(columns) * rows > vpScenarioYaml::mostFrames) {
+      node.fail("grid", vpNumberText(static_cast<double>(columns) * rows) + " points, expected at most " +
+                            vpNumberText(vpScenarioYaml::mostFrames));
+    }
     auto between = [](const std::vector<double> &ends, unsigned int k, unsigned int count) {
       return count == 1 ? 0.5 * (ends[0] + ends[1]) : ends[0] + k * (ends[1] - ends[0]) / (count - 1);
     };
@@ -182,9 +189,15 @@ vpScenario::Motion vpScenarioYaml::readMotion(const vpYamlNode &top, double fram
     readers[type - 1](node, motion);
   }
   node.finish();
+  try {
+    motion.robot.check(); // its start
+  } catch (const vpException &error) {
+    top.fail("motion", error.getStringMessage());
+  }
   if (top.has("robot")) {
     readRobot(top.mapping("robot"), motion.robot);
   }
+  double duration = 0; // s
   const vpBaseLimits limits = vpTurtleBot3(motion.robot.model).limits();
   for (const vpTimedVelocity &command : motion.commands) {
     if (limits.share(command.velocity) > 1 + 1e-9) {
@@ -193,6 +206,11 @@ vpScenario::Motion vpScenarioYaml::readMotion(const vpYamlNode &top, double fram
                              " rad/s is beyond this robot, expected |v| / " + vpNumberText(limits.v) +
                              " + |w| / " + vpNumberText(limits.w) + " of at most 1");
     }
+    duration += command.duration;
+  }
+  if (!(duration <= vpScenarioYaml::longestRun)) {
+    top.fail("motion", vpNumberText(duration) + " s of driving, expected at most " +
+                           vpNumberText(vpScenarioYaml::longestRun) + " s");
   }
   return motion;
 }

@@ -4,6 +4,7 @@
  */
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -22,8 +23,10 @@ const double degree = M_PI / 180;
 double halfPowerOf(const vpYamlNode &node, double otherwise)
 {
   const double angle = node.number("half_power_deg", Range::positive, otherwise / degree);
-  if (angle >= 90) {
-    node.fail("half_power_deg", vpNumberText(angle) + ", expected a number below 90");
+  static const double narrowest = 1; // degree
+  if (angle < narrowest || angle >= 90) {
+    node.fail("half_power_deg",
+              vpNumberText(angle) + ", expected a number from " + vpNumberText(narrowest) + " to below 90");
   }
   return angle * degree;
 }
@@ -35,6 +38,12 @@ double shareOf(const vpYamlNode &node, const std::string &key, double otherwise)
     node.fail(key, vpNumberText(share) + ", expected a number from 0 to 1");
   }
   return share;
+}
+
+//! A grey value.
+double levelOf(const vpYamlNode &node, const std::string &key, double otherwise)
+{
+  return vpScenarioYaml::between(node, key, 0, vpScenarioYaml::brightest, otherwise);
 }
 
 //! Lists of {from_s, until_s}.
@@ -64,10 +73,10 @@ vpSimulatedLamp readLight(const vpYamlNode &top, vpSimulatedScene &scene)
     return usual;
   }
   const vpYamlNode node = top.mapping("light");
-  usual.level = node.number("lamp_level", Range::positive, usual.level);
+  usual.level = levelOf(node, "lamp_level", usual.level);
   usual.rim = shareOf(node, "rim", usual.rim);
   usual.halfPower = halfPowerOf(node, usual.halfPower);
-  scene.ambient = node.number("ambient", Range::notNegative, scene.ambient);
+  scene.ambient = levelOf(node, "ambient", scene.ambient);
   if (node.has("ceiling")) {
     const vpYamlNode ceiling = node.mapping("ceiling");
     scene.ceilingShare = ceiling.number("share", Range::openUnit);
@@ -92,9 +101,10 @@ void readLamp(const vpYamlNode &node, std::vector<vpScenario::Lamp> &lamps)
     found->shift = Eigen::Vector3d(shift[0], shift[1], shift[2]);
   }
   vpSimulatedLamp &lamp = found->simulated;
-  found->clockPpm = node.number("clock_ppm", Range::any, 0);
+  static const double mostPpm = 1e5; // with what is drawn on top, it still runs forwards
+  found->clockPpm = vpScenarioYaml::between(node, "clock_ppm", -mostPpm, mostPpm, 0);
   found->dark = readTimes(node, "dark");
-  lamp.level = node.number("level", Range::positive, lamp.level);
+  lamp.level = levelOf(node, "level", lamp.level);
   lamp.rim = shareOf(node, "rim", lamp.rim);
   lamp.halfPower = halfPowerOf(node, lamp.halfPower);
   node.finish();
@@ -125,7 +135,11 @@ void readLamps(const std::optional<vpYamlNode> &truth, const vpSimulatedLamp &us
     }
   }
   if (truth->has("lamps")) {
+    std::set<std::string> read;
     for (const vpYamlNode &node : truth->mappings("lamps")) {
+      if (!read.insert(node.text("id")).second) { // its first entry would be lost
+        node.fail("id", vpShown(node.text("id")) + " a second time, expected each lamp once");
+      }
       readLamp(node, scenario.lamps);
     }
   }
@@ -134,6 +148,7 @@ void readLamps(const std::optional<vpYamlNode> &truth, const vpSimulatedLamp &us
 Eigen::Vector3d vectorOf(const vpYamlNode &node, const std::string &key)
 {
   const std::vector<double> values = node.numbers(key, 3);
+  vpScenarioYaml::expectNear(node, key, values);
   return {values[0], values[1], values[2]};
 }
 
@@ -143,7 +158,7 @@ vpSimulatedWindow readWindow(const vpYamlNode &node)
   window.centre = vectorOf(node, "centre_m");
   window.halfWidth = vectorOf(node, "half_width_m");
   window.halfHeight = vectorOf(node, "half_height_m");
-  window.level = node.number("level", Range::positive, window.level);
+  window.level = levelOf(node, "level", window.level);
   const double width = window.halfWidth.norm(), height = window.halfHeight.norm();
   static const double skew = 1e-6;
   if (!(width > 0 && height > 0) ||
@@ -162,7 +177,7 @@ vpSimulatedPerson readPerson(const vpYamlNode &node)
   vpSimulatedPerson person;
   person.radius = node.number("radius_m", Range::positive, person.radius);
   person.height = node.number("height_m", Range::positive, person.height);
-  person.level = node.number("level", Range::notNegative, person.level);
+  person.level = levelOf(node, "level", person.level);
   for (const vpYamlNode &entry : node.mappings("path")) {
     const std::vector<double> place = entry.numbers("at_m", 2);
     const double time = entry.number("time_s");

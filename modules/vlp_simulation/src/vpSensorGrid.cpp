@@ -93,9 +93,18 @@ bool vpSensorGrid::project(const Eigen::Vector3d &point, Eigen::Vector2d &pixel)
   if (point.z() < nearest) {
     return false;
   }
-  vpMeterPixelConversion::convertPoint(m_camera, point.x() / point.z(), point.y() / point.z(), pixel.x(),
-                                       pixel.y());
-  return pixel.allFinite();
+  const Eigen::Vector2d ray(point.x() / point.z(), point.y() / point.z());
+  vpMeterPixelConversion::convertPoint(m_camera, ray.x(), ray.y(), pixel.x(), pixel.y());
+  if (!pixel.allFinite()) {
+    return false;
+  }
+  if (m_camera.get_projModel() == vpCameraParameters::perspectiveProjWithoutDistortion) {
+    return true;
+  }
+  // Far off the axis, a polynomial of distortion folds back into the picture, where that pixel sees something
+  // else.
+  static const double same = 1e-3;
+  return (rayAt(pixel) - ray).norm() < same * (1 + ray.norm());
 }
 
 cv::Rect vpSensorGrid::within(const Eigen::Vector2d &upperLeft, const Eigen::Vector2d &lowerRight) const

@@ -15,8 +15,9 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  The sensor's pixels that a picture needs, as lines and samples along them: line k of the grid is exposed as a whole, whatever
-  direction the readout runs in. All of the sensor's pixels, or after a nearest-neighbour resize those that remain.
+  The sensor's pixels that a picture needs, as lines and samples along them: line k of the grid is exposed as
+  a whole, whatever direction the readout runs in. All of the sensor's pixels, or after a nearest-neighbour
+  resize those that remain.
 */
 class vpSensorGrid
 {
@@ -37,16 +38,14 @@ public:
                      : Eigen::Vector2d(m_sample[sample], m_line[line]);
   }
 
-  //! Normalised coordinates x / z, y / z of what the sensor's point \e pixel sees: the inverse of ViSP's projection, which
-  //! ViSP's own inverse is but an approximation of where the lens distorts.
+  //! Normalised coordinates x / z, y / z of what the sensor's point \e pixel sees: the inverse of ViSP's
+  //! projection, which ViSP's own inverse is but an approximation of where the lens distorts.
   Eigen::Vector2d rayAt(const Eigen::Vector2d &pixel) const;
   //! The same for a pixel of the grid, from a table.
-  Eigen::Vector2d ray(int line, int sample) const
-  {
-    return {m_x(line, sample), m_y(line, sample)};
-  }
+  Eigen::Vector2d ray(int line, int sample) const { return {m_x(line, sample), m_y(line, sample)}; }
 
-  //! Sensor pixel at which a point of the camera frame (m) is seen. \return False where it is not before the camera.
+  //! Sensor pixel at which a point of the camera frame (m) is seen. \return False where it is not before the
+  //! camera, or farther off its axis than the lens model holds.
   bool project(const Eigen::Vector3d &point, Eigen::Vector2d &pixel) const;
 
   //! Lines and samples (x: samples, y: lines) whose pixels lie within the box, clipped to the grid.

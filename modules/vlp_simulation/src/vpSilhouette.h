@@ -26,7 +26,8 @@ public:
 
   bool empty() const { return m_people.empty(); }
 
-  //! Takes what people hide out of a line of light (grey values), and puts their own in. \e wMc, \e time: of that line.
+  //! Takes what people hide out of a line of light (grey values), and puts their own in. \e wMc, \e time: of
+  //! that line.
   void hide(int line, const vpHomogeneousMatrix &wMc, double time, float *light) const;
 
 private:

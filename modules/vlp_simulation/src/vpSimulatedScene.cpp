@@ -4,12 +4,14 @@
  */
 #include <visp3/vlp_simulation/vpSimulatedScene.h>
 
+#include <visp3/core/vpException.h>
+
 BEGIN_VISP_NAMESPACE
 
 Eigen::Vector2d vpSimulatedPerson::at(double time) const
 {
   if (path.empty()) {
-    return Eigen::Vector2d::Zero();
+    throw vpException(vpException::badValue, "person: no path, expected one step or more");
   }
   if (time <= path.front().time) {
     return path.front().position;

@@ -88,7 +88,7 @@ bool vpSimulation::next(vpVlpFrame &frame)
   frame.timestamp = static_cast<double>(m_next) / m_scenario.frameRate;
   frame.name = "frame " + std::to_string(m_next);
   const auto wMc = [this](double time) { return m_motion->wMb(time) * m_camera.rig.bMc; };
-  m_renderer->render(m_scene, wMc, frame.timestamp, (m_seed << 24) + m_next, frame.I);
+  m_renderer->render(m_scene, wMc, frame.timestamp, ((m_seed << 24) | (m_seed >> 40)) + m_next, frame.I);
   ++m_next;
   return true;
 }

@@ -30,18 +30,19 @@ public:
 
   /*!
     \param modulation An unset duty counts as 0.5. \param rate How fast its clock runs, 1 + error. \param
-    phase Periods (of the whole word) that have passed at time 0.
+    phase Periods (of the whole word) that have passed at time 0. \throw vpException (badValue) where it
+    repeats at no rate that a lamp has, or where its two pulses overlap.
   */
   explicit vpLampLight(const vpModulation &modulation, double rate = 1, double phase = 0);
 
   //! No light from \e from until \e to, s: a lamp that fails, is switched off, or replaced.
-  void addDark(double from, double to) { m_dark.emplace_back(from, to); }
+  void addDark(double from, double to);
 
   //! Light from time \e from until \e to, s, \e to after \e from.
   Exposed over(double from, double to) const;
 
 private:
-  void addLight(double from, double to, double sign, double &sum, double &moment) const;
+  void addLight(double from, double to, double sign, double pivot, double &sum, double &moment) const;
 
   double m_frequency = 0;                        // Hz, of repetition; 0: always lit
   double m_phase = 0;                            // periods

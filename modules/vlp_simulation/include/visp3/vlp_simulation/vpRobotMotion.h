@@ -60,15 +60,17 @@ public:
 
   vpHomogeneousMatrix wMb(double time) override;
   double duration() const override { return m_duration; }
-  std::vector<vpOdometry> odometry() const override { return m_robot.odometrySamples(); }
+  std::vector<vpOdometry> odometry() const override;
 
 private:
   void advance(double time);
 
   vpSimulatorTurtleBot3 m_robot;
   std::vector<vpTimedVelocity> m_commands;
+  double m_start;        // s
+  double m_latest;       // s, asked for
   size_t m_next = 0;     // command to be given
-  double m_nextTime = 0; // s, when
+  double m_nextTime;     // s, when
   double m_duration = 0; // s
 };
 

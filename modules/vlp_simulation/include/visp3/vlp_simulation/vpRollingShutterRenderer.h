@@ -36,9 +36,9 @@ struct VISP_EXPORT vpSimulatedCamera {
   Each line integrates each lamp's light over its own exposure window in closed form (vpLampLight) and sees
   the lamp from where the camera is at the mean time of that light. A lamp's share of a pixel is that of the
   pixel's square, blurred, on the lamp's own outline: its edge is taken as straight with its curvature as a
-  correction of second order. Glow of the ceiling and halo of the lens are smooth and interpolated between
-  nodes. Photon noise is Gaussian of the same variance. Then come saturation, 8 bits and the resize that the
-  rig states.
+  correction of second order; of a disc of few pixels, or whose tips bend sharply, chords are summed. Glow of
+  the ceiling and halo of the lens are smooth and interpolated between nodes. Photon noise is Gaussian of the
+  same variance. Then come saturation, 8 bits and the resize that the rig states.
 */
 class VISP_EXPORT vpRollingShutterRenderer
 {
@@ -54,7 +54,8 @@ public:
 
   /*!
     The picture whose sensor's first line begins its exposure at \e timestamp, s. \param seed Of the noise;
-    the same seed gives the same bytes. \throw vpException (badValue) where a lamp's size is unknown.
+    the same seed gives the same bytes. \throw vpException (badValue) where a lamp's size is unknown or a
+    person has no path.
   */
   void render(const vpSimulatedScene &scene, const Poses &wMc, double timestamp, std::uint64_t seed,
               vpImage<unsigned char> &I) const;

@@ -45,6 +45,7 @@ struct VISP_EXPORT vpSimulatedPerson {
   double level = 3;       // grey value of the silhouette
   std::vector<Step> path; // in order of time; stands still before the first and after the last
 
+  //! m, of the axis. \throw vpException (badValue) where the path is empty.
   Eigen::Vector2d at(double time) const;
 };
 
