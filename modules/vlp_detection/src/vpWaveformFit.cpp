@@ -15,55 +15,103 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-//! Integral from 0 to x of a wave that is 1 in the first \e duty of each period.
-double integral(double x, double duty)
+//! A wave that is 1 in the first \e duty of each period, at \e x periods: its integral from 0, itself, and
+//! how the integral grows with the duty.
+struct Pulse {
+  double integral, level, byDuty;
+  Pulse(double x, double duty)
+  {
+    const double whole = std::floor(x), begun = x - whole;
+    const bool lit = begun < duty;
+    integral = whole * duty + (lit ? begun : duty);
+    level = lit ? 1 : 0;
+    byDuty = whole + (lit ? 0 : 1);
+  }
+};
+
+//! A pulse averaged over \e width periods about \e x, and its derivatives.
+struct Averaged {
+  double value, byX, byWidth, byDuty;
+  Averaged(double x, double width, double duty)
+  {
+    const double w = std::max(width, 1e-6);
+    const Pulse to(x + 0.5 * w, duty), from(x - 0.5 * w, duty);
+    value = (to.integral - from.integral) / w;
+    byX = (to.level - from.level) / w;
+    byWidth = (0.5 * (to.level + from.level) - value) / w;
+    byDuty = (to.byDuty - from.byDuty) / w;
+  }
+};
+
+//! Normal numbers that are the same each time and spread more evenly than random ones: inverse normal
+//! distribution (Acklam's rational approximation is not needed to more digits than these: Beasley, Springer
+//! and Moro 1995) of a Kronecker sequence.
+double normalQuantile(double p)
 {
-  const double whole = std::floor(x);
-  return whole * duty + std::min(x - whole, duty);
+  static const double a[] = {2.50662823884, -18.61500062529, 41.39119773534, -25.44106049637};
+  static const double b[] = {-8.47351093090, 23.08336743743, -21.06224101826, 3.13082909833};
+  static const double c[] = {0.3374754822726147, 0.9761690190917186, 0.1607979714918209,
+                             0.0276438810333863, 0.0038405729373609, 0.0003951896511919,
+                             0.0000321767881768, 0.0000002888167364, 0.0000003960315187};
+  const double y = p - 0.5;
+  if (std::abs(y) < 0.42) {
+    const double r = y * y;
+    return y * (((a[3] * r + a[2]) * r + a[1]) * r + a[0]) /
+           ((((b[3] * r + b[2]) * r + b[1]) * r + b[0]) * r + 1);
+  }
+  const double r = std::log(-std::log(y > 0 ? 1 - p : p));
+  double x = c[8];
+  for (int k = 7; k >= 0; --k) {
+    x = c[k] + r * x;
+  }
+  return y < 0 ? -x : x;
 }
 
 } // namespace
 
-vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings)
-    : m_profile(&profile), m_settings(settings)
+vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
+                             const Eigen::VectorXd &envelope)
+    : m_profile(&profile), m_settings(settings),
+      m_linear(2 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2))
 {
   const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
+  const size_t n = profile.light.size();
   m_middle = 0.5 * (*first + *last);
   m_half = std::max(0.5 * (*last - *first), 1e-12);
-  m_weight.resize(static_cast<Eigen::Index>(profile.light.size()));
-  for (size_t i = 0; i < profile.light.size(); ++i) {
-    m_weight(i) = 1 / std::hypot(profile.sigma[i], m_settings.modelError * profile.light[i]);
+  m_line = 2 * m_half / std::max<double>(1, static_cast<double>(n) - 1);
+  for (size_t i = 0; i < n; ++i) {
+    const double y = (profile.time[i] - m_middle) / m_half;
+    double log = 0;
+    for (Eigen::Index k = envelope.size() - 1; k >= 0; --k) {
+      log = log * y + envelope(k);
+    }
+    m_given.push_back(std::exp(std::clamp(log, -20.0, 20.0)));
+    // A dark line has some light of its neighbours, by blur and compression.
+    static const double spill = 0.01; // share of theirs, standard deviation
+    const double missed = std::hypot(m_settings.modelError * profile.light[i], spill * m_given.back());
+    m_weight.push_back(1 / (profile.sigma[i] * profile.sigma[i] + missed * missed));
   }
+  m_wave.resize(n);
+  m_derivative.resize(n);
 }
 
-double vpWaveformFit::waveform(double x, double width, double duty)
+double vpWaveformFit::waveform(const Vector &x, double t, Vector &derivative) const
 {
-  const double half = 0.5 * std::max(width, 1e-6);
-  return (integral(x + half, duty) - integral(x - half, duty)) / (2 * half);
-}
-
-double vpWaveformFit::model(const Eigen::VectorXd &x, size_t line) const
-{
-  const double t = m_profile->time[line] - m_middle;
   const double turns = x(frequency) * t + x(phase);
   const double width = x(exposure) * x(frequency);
-  double wave;
+  const double own = m_settings.twoPulse ? 0.5 : 1; // share of the duty that is one pulse's
+  const Averaged one(turns, width, own * x(duty));
+  double value = one.value, byX = one.byX, byWidth = one.byWidth, byDuty = own * one.byDuty, byDifference = 0;
   if (m_settings.twoPulse) {
-    wave = waveform(turns, width, 0.5 * x(duty)) + waveform(turns - x(phaseDifference), width, 0.5 * x(duty));
-  } else {
-    wave = waveform(turns, width, x(duty));
+    const Averaged two(turns - x(phaseDifference), width, own * x(duty));
+    value += two.value;
+    byX += two.byX;
+    byWidth += two.byWidth;
+    byDuty += own * two.byDuty;
+    byDifference = -two.byX;
   }
-  const double y = t / m_half;
-  double log = 0;
-  for (Eigen::Index k = x.size() - 1; k >= waveformParameters; --k) {
-    log = log * y + x(k);
-  }
-  return x(offset) + std::exp(std::min(log, 20.0)) * wave;
-}
-
-bool vpWaveformFit::isFree(int parameter) const
-{
-  return parameter != phaseDifference || m_settings.twoPulse;
+  derivative << byX * t + byWidth * x(exposure), byX, byDuty, byWidth * x(frequency), byDifference;
+  return value;
 }
 
 //! Weight of a parameter's prior and its mean.
@@ -80,160 +128,215 @@ double vpWaveformFit::prior(int parameter, double &mean) const
   case phaseDifference:
     mean = 0.25;
     return weight(0.15);
-  case frequency:
-  case phase:
-  case offset:
+  default:
     mean = 0;
     return 0;
-  default: // of the envelope the level is free, its bends are unlikely to be sharp
-    mean = 0;
-    return parameter == waveformParameters ? 0 : weight(5);
   }
 }
 
-void vpWaveformFit::keepPossible(Eigen::VectorXd &x) const
+void vpWaveformFit::keepPossible(Vector &x) const
 {
   // A start is good to less than half a cycle over the profile: farther off lies another one's minimum.
   const double reach = 0.4 / m_half;
   x(frequency) =
       std::max(std::clamp(x(frequency), m_startFrequency - reach, m_startFrequency + reach), 0.1 / m_half);
   x(duty) = std::clamp(x(duty), 0.02, 0.98);
-  x(exposure) = std::clamp(x(exposure), 0.1 * m_profile->exposure, 5 * m_profile->exposure);
-  // No light is less than none: were it, a lamp's dark pulse blurred by a long exposure would do for a bright
-  // one.
-  const double error = 0.02 * std::exp(std::min(x(waveformParameters), 20.0));
-  x(offset) = std::max(x(offset), -error - 1);
+  if (m_freeExposure) {
+    x(exposure) = std::clamp(x(exposure), 0.1 * m_profile->exposure, 5 * m_profile->exposure);
+  }
   if (m_settings.twoPulse) {
     x(phaseDifference) = std::clamp(x(phaseDifference), 0.5 * x(duty), 0.5);
   }
 }
 
-double vpWaveformFit::cost(const Eigen::VectorXd &x, Eigen::VectorXd &weighted) const
+double vpWaveformFit::cost(const Vector &x, bool derivatives)
 {
-  for (Eigen::Index i = 0; i < weighted.size(); ++i) {
-    weighted(i) = m_weight(i) * (m_profile->light[i] - model(x, i));
+  // Normal equations of offset and envelope; the envelope's bends are unlikely to be sharp.
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, mostLinear, mostLinear>;
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, mostLinear, 1>;
+  const size_t n = m_wave.size();
+  Small A = Small::Zero(m_linear, m_linear);
+  Column b = Column::Zero(m_linear);
+  double squares = 0;
+  Vector derivative;
+  std::array<double, mostLinear> row{};
+  row[0] = 1;
+  for (size_t i = 0; i < n; ++i) {
+    const double t = m_profile->time[i] - m_middle, w = m_weight[i], light = m_profile->light[i];
+    m_wave[i] = waveform(x, t, derivative);
+    if (derivatives) {
+      m_derivative[i] = derivative;
+    }
+    row[1] = m_given[i] * m_wave[i];
+    for (int k = 2; k < m_linear; ++k) {
+      row[k] = row[k - 1] * t / m_half;
+    }
+    for (int k = 0; k < m_linear; ++k) {
+      for (int l = 0; l <= k; ++l) {
+        A(k, l) += w * row[k] * row[l];
+      }
+      b(k) += w * row[k] * light;
+    }
+    squares += w * light * light;
   }
-  double sum = weighted.squaredNorm();
-  for (int p = 0; p < x.size(); ++p) {
+  A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
+  for (int k = 2; k < m_linear; ++k) {
+    A(k, k) += 0.06; // bends of four times the envelope are one standard deviation
+  }
+  A.triangularView<Eigen::StrictlyUpper>() = A.transpose();
+  Column c = A.ldlt().solve(b);
+  // No light is less than none: were it, a lamp's dark pulse blurred by a long exposure would do for a bright
+  // one.
+  const double least = -1 - 0.02 * std::abs(c(1)) * m_given[m_given.size() / 2];
+  if (c(0) < least) {
+    const Column fixed = b - least * A.col(0);
+    c.tail(m_linear - 1) =
+        A.bottomRightCorner(m_linear - 1, m_linear - 1).ldlt().solve(fixed.tail(m_linear - 1));
+    c(0) = least;
+  }
+  for (int k = 0; k < m_linear; ++k) {
+    m_coefficient[static_cast<size_t>(k)] = c(k);
+  }
+  if (!(c(1) > 0)) {
+    return 1e300; // a lamp that shines where it should be dark
+  }
+  m_chiSquare = std::max(0.0, squares - 2 * c.dot(b) + c.dot(A * c));
+  double sum = m_chiSquare;
+  for (int p = 0; p < parameters; ++p) {
     double mean;
-    const double weight = prior(p, mean);
-    sum += weight * (x(p) - mean) * (x(p) - mean);
+    const double weight = isFree(p) ? prior(p, mean) : 0;
+    if (weight > 0) {
+      sum += weight * (x(p) - mean) * (x(p) - mean);
+    }
   }
   return sum;
 }
 
-/*!
-  Levenberg-Marquardt from m_x, with derivatives over \e reach seconds. \return the normal equations' matrix
-  there.
-*/
-Eigen::MatrixXd vpWaveformFit::descend(double reach, Eigen::VectorXd &residual)
+//! Of the nonlinear parameters, the linear ones eliminated; at the place of the latest cost(), with
+//! derivatives.
+void vpWaveformFit::normalEquations(Matrix &H, Vector &g) const
 {
-  const int n = static_cast<int>(m_weight.size());
-  const int count = static_cast<int>(m_x.size());
-  Eigen::VectorXd step(count);
-  step.setConstant(1e-4);
-  step(phase) = step(duty) = step(phaseDifference) = reach * m_x(frequency);
-  step(frequency) = step(phase) / m_half;
-  step(exposure) = std::min(reach, 0.3 * m_x(exposure));
-  step(offset) = 1e-2;
-
-  Eigen::VectorXd shifted(n), trial(n);
-  double best = cost(m_x, residual);
-  Eigen::MatrixXd J(n, count);
-  Eigen::MatrixXd H;
-  double damping = 1e-3;
-  for (int iteration = 0; iteration < 40; ++iteration) {
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(count);
-    for (int p = 0; p < count; ++p) {
-      if (!isFree(p)) {
-        J.col(p).setZero();
-        continue;
-      }
-      Eigen::VectorXd x = m_x;
-      x(p) += step(p);
-      cost(x, shifted);
-      x(p) -= 2 * step(p);
-      cost(x, trial);
-      J.col(p) = (trial - shifted) / (2 * step(p)); // d model / d p, weighted
+  constexpr int all = parameters + mostLinear;
+  using Full = Eigen::Matrix<double, all, all>;
+  Full N = Full::Zero();
+  Eigen::Matrix<double, all, 1> r = Eigen::Matrix<double, all, 1>::Zero(), J;
+  for (size_t i = 0; i < m_wave.size(); ++i) {
+    const double y = (m_profile->time[i] - m_middle) / m_half;
+    double envelope = 0, power = m_given[i];
+    J.setZero();
+    J(parameters) = 1;
+    for (int k = 1; k < m_linear; ++k) {
+      envelope += m_coefficient[static_cast<size_t>(k)] * power;
+      J(parameters + k) = m_wave[i] * power;
+      power *= y;
     }
-    H = J.transpose() * J;
-    g += J.transpose() * residual;
-    for (int p = 0; p < count; ++p) {
+    J.head<parameters>() = envelope * m_derivative[i];
+    const double residual = m_profile->light[i] - m_coefficient[0] - envelope * m_wave[i];
+    N.noalias() += m_weight[i] * J * J.transpose();
+    r += m_weight[i] * residual * J;
+  }
+  N.diagonal().tail<mostLinear>().array() += 1e-9 * N(parameters, parameters) + 1e-12;
+  const Eigen::Matrix<double, mostLinear, mostLinear> L = N.bottomRightCorner<mostLinear, mostLinear>();
+  const Eigen::Matrix<double, mostLinear, parameters> C = N.bottomLeftCorner<mostLinear, parameters>();
+  H = N.topLeftCorner<parameters, parameters>() - C.transpose() * L.ldlt().solve(C);
+  g = r.head<parameters>(); // the linear ones are at their best: their gradient is 0
+}
+
+bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k, double startExposure,
+                        bool near)
+{
+  const double exposed = startExposure > 0 ? startExposure : m_profile->exposure;
+  static const double slow = 0.3; // periods
+  m_startFrequency = f;
+  m_x << f, startPhase, startDuty, exposed, k;
+  // A sharp edge is felt only by the line that it falls into, and would be led on line by line; a slow one
+  // from afar.
+  if (!near && exposed * f < 0.5 * slow) {
+    m_x(exposure) = slow / f;
+    m_freeExposure = false;
+    keepPossible(m_x);
+    descend(15);
+    m_freeExposure = true;
+    m_x(exposure) = exposed;
+  }
+  keepPossible(m_x);
+  descend(60);
+  for (int round = 0; round < 2 && m_linear > 2 && bendEnvelope(); ++round) {
+    descend(20);
+  }
+  return m_x.allFinite() && m_cost < 1e299;
+}
+
+//! Takes what the polynomial found into the given envelope: where a lamp is ten times dimmer at its rim,
+//! polynomials alone do not do.
+bool vpWaveformFit::bendEnvelope()
+{
+  static const double most = 5;
+  std::vector<double> bent = m_given;
+  for (size_t i = 0; i < bent.size(); ++i) {
+    const double factor = envelope(i) / (m_given[i] * m_coefficient[1]);
+    if (!(factor > 1 / most && factor < most)) {
+      return false;
+    }
+    bent[i] *= factor;
+  }
+  m_given = bent;
+  return true;
+}
+
+//! At line \e i, as it was fitted, grey levels.
+double vpWaveformFit::envelope(size_t i) const
+{
+  const double y = (m_profile->time[i] - m_middle) / m_half;
+  double sum = 0;
+  for (int k = m_linear - 1; k >= 1; --k) {
+    sum = sum * y + m_coefficient[static_cast<size_t>(k)];
+  }
+  return sum * m_given[i];
+}
+
+//! Levenberg and Marquardt's method from m_x.
+void vpWaveformFit::descend(int iterations)
+{
+  m_cost = cost(m_x, true);
+  double damping = 1e-3;
+  Vector step = Vector::Ones(); // what a parameter may well be off by
+  step(phase) = step(duty) = step(phaseDifference) = m_line * m_x(frequency);
+  step(frequency) = step(phase) / m_half;
+  step(exposure) = 0.3 * m_profile->exposure;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    Vector g;
+    normalEquations(m_curvature, g);
+    for (int p = 0; p < parameters; ++p) {
       double mean;
-      const double weight = isFree(p) ? prior(p, mean) : 1;
-      H(p, p) += weight;
-      if (isFree(p) && weight > 0) {
-        g(p) -= weight * (m_x(p) - mean);
-      }
+      const double weight = prior(p, mean);
+      m_curvature(p, p) += isFree(p) ? weight : 1e12;
+      g(p) = isFree(p) ? g(p) - weight * (m_x(p) - mean) : 0;
     }
     bool better = false;
     double gain = 0;
-    for (int attempt = 0; attempt < 8 && !better; ++attempt) {
-      Eigen::MatrixXd damped = H;
-      damped.diagonal() *= 1 + damping;
-      damped.diagonal().array() += 1e-12;
-      const Eigen::VectorXd move = damped.ldlt().solve(g);
-      Eigen::VectorXd x = m_x + move;
+    for (int attempt = 0; attempt < 6 && !better; ++attempt) {
+      // An edge between two exposures is felt by no line: the damping holds it where it is.
+      Matrix damped = m_curvature;
+      damped.diagonal() += damping * (m_curvature.diagonal() + step.cwiseAbs2().cwiseInverse());
+      Vector x = m_x + damped.ldlt().solve(g);
       keepPossible(x);
-      const double c = move.allFinite() ? cost(x, trial) : best;
-      if (c < best) {
-        gain = best - c;
-        best = c;
+      const double c = x.allFinite() ? cost(x, true) : m_cost;
+      if (c < m_cost) {
+        gain = m_cost - c;
+        m_cost = c;
         m_x = x;
-        residual = trial;
         better = true;
         damping = std::max(damping * 0.2, 1e-7);
       } else {
-        damping *= 5;
+        damping = std::max(10 * damping, 1e-3);
       }
     }
-    if (!better || gain < 1e-6 * best) {
+    if (!better || gain < 1e-4 + 1e-7 * m_cost) {
       break;
     }
   }
-  return H;
-}
-
-bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
-                        const Eigen::VectorXd &startEnvelope, double startExposure)
-{
-  const int n = static_cast<int>(m_weight.size());
-  m_x = Eigen::VectorXd::Zero(waveformParameters + m_settings.envelopeOrder + 1);
-  m_startFrequency = f;
-  m_x(frequency) = f;
-  m_x(phase) = startPhase;
-  m_x(duty) = startDuty;
-  m_x(exposure) = startExposure > 0 ? startExposure : m_profile->exposure;
-  m_x(phaseDifference) = k;
-  const Eigen::Index bends = std::min<Eigen::Index>(startEnvelope.size(), m_settings.envelopeOrder + 1);
-  m_x.segment(waveformParameters, bends) = startEnvelope.head(bends);
-  keepPossible(m_x);
-
-  // An edge of the pulse is felt by the line that it falls into and by no other: derivatives over a third of
-  // a line see across the kinks that this makes, those over a fraction of it then settle.
-  const double line = 2 * m_half / std::max(1, n - 1);
-  Eigen::VectorXd residual(n);
-  Eigen::MatrixXd H;
-  for (double share : {0.33, 0.02}) {
-    H = descend(share * line, residual);
-  }
-  const double chiSquare = residual.squaredNorm();
-  m_cost = cost(m_x, residual);
-  // What the model leaves out is alike on neighbouring lines: they say less together than each says alone.
-  const double alike = residual.head(n - 1).dot(residual.tail(n - 1)) / std::max(chiSquare, 1e-12);
-  const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
-  // A variance told from few residuals may be any.
-  const double untold = 1 + 6.0 / (degreesOfFreedom() * degreesOfFreedom());
-  const Eigen::MatrixXd covariance = untold * H.inverse();
-  m_sigma = (covariance.diagonal().cwiseMax(0) * std::max(1.0, together * chiSquare / degreesOfFreedom()))
-                .cwiseSqrt();
-  // Minima lie a fraction of a line apart (above), and the curvature of one of them does not know the others.
-  const double placed =
-      0.07 * line * std::min(1.0, line / m_x(exposure)); // s, standard deviation of the pulses
-  m_sigma(frequency) = std::hypot(m_sigma(frequency), placed * m_x(frequency) / (2 * m_half));
-  m_sigma(duty) = std::hypot(m_sigma(duty), placed * m_x(frequency));
-  m_sigma(phaseDifference) = std::hypot(m_sigma(phaseDifference), placed * m_x(frequency));
-  return m_x.allFinite() && m_sigma.allFinite();
+  m_cost = cost(m_x, true);
 }
 
 bool vpWaveformFit::preferStatedExposure(int attempts)
@@ -256,33 +359,130 @@ bool vpWaveformFit::preferStatedExposure(int attempts)
   if (exposed > wholePeriod) {
     exposed = 0.5; // no pulse, only a start for one
   }
-  Eigen::VectorXd envelope = m_x.tail(m_x.size() - waveformParameters);
-  envelope(0) += std::log(std::min(1.0, m_x(duty) / exposed)) - std::log(std::min(1.0, exposed / m_x(duty)));
   // The pulse's middle stays. The fit from there may find its way back.
-  return run(m_x(frequency), m_x(phase) + 0.5 * (exposed - m_x(duty)), exposed, 0, envelope, pulse);
+  return run(m_x(frequency), m_x(phase) + 0.5 * (exposed - m_x(duty)), exposed, 0, pulse, true) &&
+         preferStatedExposure(attempts - 1);
+}
+
+void vpWaveformFit::integrate()
+{
+  // What the model leaves out is alike on neighbouring lines: they say less together than each says alone.
+  double along = 0, before = 0;
+  for (size_t i = 0; i < m_wave.size(); ++i) {
+    const double residual =
+        std::sqrt(m_weight[i]) * (m_profile->light[i] - m_coefficient[0] - envelope(i) * m_wave[i]);
+    along += i > 0 ? residual * before : 0;
+    before = residual;
+  }
+  const double alike = along / std::max(m_chiSquare, 1e-12);
+  const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
+  // A variance told from few residuals may be any.
+  const double degrees = degreesOfFreedom();
+  const double inflation = std::max(1.0, together * m_chiSquare / degrees) * (1 + 6 / (degrees * degrees));
+
+  // Where no line feels an edge, it lies within half the distance of two lines, about.
+  Vector reach = Vector::Ones();
+  reach(phase) = reach(duty) = reach(phaseDifference) = 0.5 * m_line * m_x(frequency);
+  reach(frequency) = reach(phase) / m_half;
+  reach(exposure) = m_settings.exposureTolerance * m_profile->exposure;
+  const Matrix wide = reach.cwiseAbs2().cwiseInverse().asDiagonal();
+  static const double gap = 1.15; // exposures from line to line
+  Posterior posterior{m_x, (m_curvature / inflation + wide).inverse(), 0};
+  static const int few = 64, many = 128; // samples
+  static const double good = 0.4;        // share of them that count
+  if (m_line < gap * m_profile->exposure) {
+    posterior = sampled(posterior, few, inflation);
+  }
+  if (posterior.effective < good) {
+    // Not bell-shaped, and the minimum may lie at a wall of it: from a flattened posterior down to itself.
+    posterior = {m_x, (m_curvature / (32 * inflation) + wide).inverse(), 0};
+    for (double temperature : {32.0, 8.0, 2.0, 1.0, 1.0}) {
+      posterior = sampled(posterior, many, inflation * temperature);
+    }
+  }
+  m_x = posterior.mean;
+  m_sigma = posterior.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  m_cost = cost(m_x, true);
+}
+
+/*!
+  Mean and covariance of exp(-cost / (2 \e temperature)), by samples from a normal distribution wider than \e
+  from, each weighted by how much it was drawn too often.
+*/
+vpWaveformFit::Posterior vpWaveformFit::sampled(const Posterior &from, int samples, double temperature)
+{
+  static const double wider = 1.8; // variance of the samples
+  const Eigen::LLT<Matrix> root(wider * from.covariance);
+  if (root.info() != Eigen::Success) {
+    return from;
+  }
+  std::vector<Vector> places;
+  std::vector<double> logs;
+  for (int k = 0; k < samples; ++k) {
+    // Kronecker sequence of the generalised golden ratio in five dimensions (Roberts 2018): even, and the
+    // same each time.
+    static const double ratio = 1.1673039782614187;
+    Vector normal;
+    double power = 1;
+    for (int p = 0; p < parameters; ++p) {
+      power /= ratio;
+      const double turn = 0.5 + (k + 1) * power;
+      normal(p) = isFree(p) ? normalQuantile(std::clamp(turn - std::floor(turn), 1e-6, 1 - 1e-6)) : 0;
+    }
+    const Vector x = from.mean + root.matrixL() * normal;
+    Vector possible = x;
+    keepPossible(possible);
+    if (possible == x) {
+      places.push_back(x);
+      logs.push_back(-0.5 * cost(x, false) / temperature + 0.5 * normal.squaredNorm());
+    }
+  }
+  if (places.empty()) {
+    return from;
+  }
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0, squares = 0;
+  Vector first = Vector::Zero();
+  Matrix second = Matrix::Zero();
+  for (size_t k = 0; k < places.size(); ++k) {
+    const double weight = std::exp(logs[k] - most);
+    const Vector apart = places[k] - from.mean;
+    sum += weight;
+    squares += weight * weight;
+    first += weight * apart;
+    second += weight * apart * apart.transpose();
+  }
+  first /= sum;
+  Posterior posterior{from.mean + first, second / sum - first * first.transpose(),
+                      sum * sum / squares / samples};
+  // Few samples that count make a narrow cloud out of any.
+  const double counted = std::max(1.0, sum * sum / squares);
+  posterior.covariance += from.covariance / (1 + counted * counted / 16);
+  return posterior;
 }
 
 int vpWaveformFit::degreesOfFreedom() const
 {
-  const int free = static_cast<int>(m_x.size()) - (m_settings.twoPulse ? 0 : 1);
-  return std::max(1, static_cast<int>(m_weight.size()) - free);
+  const int free = (m_settings.twoPulse ? parameters : parameters - 1) + m_linear;
+  return std::max(1, static_cast<int>(m_wave.size()) - free);
 }
 
 double vpWaveformFit::misfit() const
 {
-  const auto n = static_cast<double>(m_profile->light.size());
+  static const double unevenness = 0.3; // share of the envelope that it may be off by
   double mean = 0;
-  for (double light : m_profile->light) {
-    mean += light / n;
+  for (double wave : m_wave) {
+    mean += wave / static_cast<double>(m_wave.size());
   }
   double power = 0, left = 0;
-  for (size_t i = 0; i < m_profile->light.size(); ++i) {
-    const double residual = m_profile->light[i] - model(m_x, i);
-    const double noise = m_profile->sigma[i];
-    left += residual * residual - noise * noise;
-    power += (m_profile->light[i] - mean) * (m_profile->light[i] - mean);
+  for (size_t i = 0; i < m_wave.size(); ++i) {
+    const double height = std::max(envelope(i), 1e-9);
+    const double residual = m_profile->light[i] - m_coefficient[0] - height * m_wave[i];
+    const double excess = std::max(0.0, (std::abs(residual) - 3 * m_profile->sigma[i]) / height - unevenness);
+    left += std::min(excess * excess, 1.0);
+    power += (m_wave[i] - mean) * (m_wave[i] - mean);
   }
-  return std::max(0.0, left) / std::max(power, 1e-9);
+  return left / std::max(power, 1e-9);
 }
 
 END_VISP_NAMESPACE

@@ -5,7 +5,7 @@
 #ifndef vpWaveformFit_h
 #define vpWaveformFit_h
 
-#include <cmath>
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,28 +14,41 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Least squares of a profile to a blinking lamp: light = offset + exp(envelope(y)) S(f t + phase), S the one-
-  or two-pulse waveform averaged over the exposure, y the line scaled to [-1, 1] over the profile.
+  A blinking lamp fitted to a profile: light = offset + envelope(y) S(f t + phase), S the one- or two-pulse
+  waveform averaged over the exposure in closed form, the envelope a polynomial in y, the line scaled to [-1,
+  1] over the profile.
+
+  Offset and envelope are linear and solved for at each step (variable projection, Golub and Pereyra 1973);
+  Levenberg and Marquardt's method does the rest. Where the lines leave gaps between their exposures, an edge
+  of a pulse may lie anywhere in one: the cost is flat there and its curvature says nothing. So integrate()
+  takes mean and standard deviation from samples of the posterior (population Monte Carlo, Cappe et al. 2004),
+  with the same samples each time.
 */
 class vpWaveformFit
 {
 public:
-  //! Waveform parameters, in this order; envelope coefficients follow.
-  enum Parameter { frequency, phase, duty, exposure, offset, phaseDifference, waveformParameters };
+  enum Parameter { frequency, phase, duty, exposure, phaseDifference, parameters };
+  using Vector = Eigen::Matrix<double, parameters, 1>;
+  using Matrix = Eigen::Matrix<double, parameters, parameters>;
 
   struct Settings {
-    int envelopeOrder = 0;
+    int envelopeOrder = 0; // up to 4
     bool twoPulse = false;
     double modelError = 0.03;
     double exposureTolerance = 0.5;
   };
 
-  vpWaveformFit(const vpStripeProfile &profile, const Settings &settings);
+  //! \param envelope How bright the lamp is along the lines, about: coefficients of the logarithm's
+  //! polynomial in y.
+  vpWaveformFit(const vpStripeProfile &profile, const Settings &settings, const Eigen::VectorXd &envelope);
 
-  //! \param start f (Hz), phase (periods, at the middle of the profile), duty, k; \param envelope log of the
-  //! light when lit. \param exposure s, where it is to start from another one than the profile's.
-  bool run(double f, double phase, double duty, double k, const Eigen::VectorXd &envelope,
-           double exposure = 0);
+  /*!
+    Least squares from a start. \param f Hz. \param startPhase Periods, at the middle of the profile. \param k
+    Phase difference, periods. \param startExposure s; 0: the profile's. \param near The start is good to a
+    line or so.
+  */
+  bool run(double f, double startPhase, double startDuty, double k, double startExposure = 0,
+           bool near = false);
 
   /*!
     Pulse and exposure are both boxes, and which is which the profile does not say: swaps them where that
@@ -43,36 +56,63 @@ public:
   */
   bool preferStatedExposure(int attempts = 2);
 
+  //! Turns values and standard deviations into those of the posterior about the minimum that run() found.
+  void integrate();
+
   double value(Parameter p) const { return m_x(p); }
   double sigma(Parameter p) const { return m_sigma(p); }
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
-  //! Adds to the variance of a parameter.
-  void widen(Parameter p, double variance) { m_sigma(p) = std::sqrt(m_sigma(p) * m_sigma(p) + variance); }
-  int degreesOfFreedom() const;
-  //! Share of the stripes' power left unexplained, beyond what noise explains.
+  //! Light where the fit has none or the other way round: squared residuals beyond noise and unevenness as a
+  //! share of the stripes' power.
   double misfit() const;
 
-  //! Light of a lamp at phase \e x (periods), averaged over \e width periods about it.
-  static double waveform(double x, double width, double duty);
-
 private:
-  double model(const Eigen::VectorXd &x, size_t line) const;
-  double cost(const Eigen::VectorXd &x, Eigen::VectorXd &weighted) const;
-  Eigen::MatrixXd descend(double reach, Eigen::VectorXd &residual);
-  bool isFree(int parameter) const;
-  void keepPossible(Eigen::VectorXd &x) const;
+  static constexpr int mostLinear = 6;
+
+  struct Posterior {
+    Vector mean;
+    Matrix covariance;
+    double effective; // share of the samples that count
+  };
+  Posterior sampled(const Posterior &from, int samples, double temperature);
+
+  //! The lamp's light at one line, averaged over the exposure, and its derivatives.
+  double waveform(const Vector &x, double t, Vector &derivative) const;
+  //! Cost where offset and envelope fit best. Fills m_wave, and m_derivative where \e derivatives.
+  double cost(const Vector &x, bool derivatives);
+  void normalEquations(Matrix &H, Vector &g) const;
+  void descend(int iterations);
+  bool bendEnvelope();
+  double envelope(size_t i) const;
+  bool isFree(int parameter) const
+  {
+    return parameter == phaseDifference ? m_settings.twoPulse : parameter != exposure || m_freeExposure;
+  }
+  void keepPossible(Vector &x) const;
   double prior(int parameter, double &mean) const;
+  int degreesOfFreedom() const;
 
   const vpStripeProfile *m_profile;
   Settings m_settings;
+  int m_linear = 2;            // offset and envelope coefficients
   double m_middle = 0;         // s
   double m_half = 1;           // s
+  double m_line = 0;           // s, mean distance of the lines
   double m_startFrequency = 0; // Hz
-  Eigen::VectorXd m_weight;    // 1 / standard deviation of each line
-  Eigen::VectorXd m_x;
-  Eigen::VectorXd m_sigma;
+  bool m_freeExposure = true;
+  std::vector<double> m_weight; // 1 / variance of each line
+  std::vector<double> m_given;  // envelope
+  Vector m_x = Vector::Zero();
+  Vector m_sigma = Vector::Zero();
+  Matrix m_curvature = Matrix::Zero(); // of half the cost, priors included
   double m_cost = 0;
+  double m_chiSquare = 0; // of the profile alone
+  double m_alike = 0;     // correlation of neighbouring residuals
+  // Of the latest cost(): at each line the wave, its derivatives; and the linear parameters.
+  std::vector<double> m_wave;
+  std::vector<Vector> m_derivative;
+  std::array<double, mostLinear> m_coefficient{};
 };
 
 END_VISP_NAMESPACE

@@ -46,10 +46,10 @@ class VISP_EXPORT vpStripeAnalyzer
 public:
   double modelError = 0.03;       // share of a line's light that the model may be off by, standard deviation
   double exposureTolerance = 0.5; // standard deviation of the exposure about the rig's, as a share of it
-  double maxMisfit = 0.2; // share of the stripes' power that a pwm or twoPulse lamp may leave unexplained
-  double minModulation = 0.05; // depth of stripes below which a lamp counts as unmodulated
-  bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
-  double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
+  double maxMisfit = 0.05;        // share of the stripes' power that may contradict a pwm or twoPulse lamp
+  double minModulation = 0.05;    // depth of stripes below which a lamp counts as unmodulated
+  bool searchTwoPulses = true;    // off where no lamp of the map is one: a search of tens of milliseconds
+  double minSignificance = 30;    // gain in chi-square by which a sinusoid has to beat a plain lamp
 
   //! Signal, frequency, duty, phase difference, stripes, modulation, misfit; area is left to the caller.
   vpStripeFeatures analyze(const vpStripeProfile &profile) const;

@@ -1,0 +1,210 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpStripeStarts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+double scaledLine(const vpStripeProfile &profile, size_t i)
+{
+  const double first = profile.time.front(), last = profile.time.back();
+  return (2 * profile.time[i] - first - last) / std::max(std::abs(last - first), 1e-12);
+}
+
+double polynomial(const Eigen::VectorXd &coefficients, double y)
+{
+  double sum = 0;
+  for (Eigen::Index k = coefficients.size() - 1; k >= 0; --k) {
+    sum = sum * y + coefficients(k);
+  }
+  return sum;
+}
+} // namespace
+
+std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
+{
+  static const double share = 0.3;
+  static const double sigmas = 6;
+  static const double ofTheLast = 0.25; // in a long dark gap, noise rises far
+  std::vector<size_t> peaks;
+  const std::vector<double> &p = profile.light;
+  size_t high = 0, low = 0;
+  bool rising = true;
+  for (size_t i = 1; i < p.size(); ++i) {
+    const double least = sigmas * profile.sigma[i];
+    if (rising) {
+      if (p[i] > p[high]) {
+        high = i;
+      } else if (p[high] - p[i] > std::max(least, share * p[high])) {
+        peaks.push_back(high);
+        low = i;
+        rising = false;
+      }
+    } else {
+      if (p[i] < p[low]) {
+        low = i;
+      } else if (p[i] - p[low] > std::max({least, share * p[i], ofTheLast * p[high]})) {
+        high = i;
+        rising = true;
+      }
+    }
+  }
+  if (rising && (peaks.empty() || p[high] > 0.3 * p[peaks.back()])) {
+    peaks.push_back(high);
+  }
+  return peaks;
+}
+
+Eigen::VectorXd vpStripeStarts::envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks,
+                                         int order)
+{
+  const auto n = static_cast<Eigen::Index>(peaks.size());
+  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(order + 1);
+  if (n == 0) {
+    coefficients(0) = std::log(std::max(1.0, *std::max_element(profile.light.begin(), profile.light.end())));
+    return coefficients;
+  }
+  const int fitted = static_cast<int>(std::min<Eigen::Index>(order, n - 1));
+  Eigen::MatrixXd A(n + fitted, fitted + 1);
+  Eigen::VectorXd b(n + fitted);
+  A.setZero();
+  b.setZero();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double y = scaledLine(profile, peaks[i]);
+    for (int k = 0; k <= fitted; ++k) {
+      A(i, k) = std::pow(y, k);
+    }
+    b(i) = std::log(std::max(profile.light[peaks[i]], 0.5));
+  }
+  for (int k = 1; k <= fitted; ++k) {
+    A(n + k - 1, k) = 0.1; // as flat as the peaks allow
+  }
+  coefficients.head(fitted + 1) = A.colPivHouseholderQr().solve(b);
+  return coefficients;
+}
+
+std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripeProfile &profile,
+                                                                  const Eigen::VectorXd &envelope,
+                                                                  double modelError)
+{
+  const auto n = static_cast<Eigen::Index>(profile.light.size());
+  const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
+  const double middle = 0.5 * (*first + *last);
+  const double span = (*last - *first) * n / std::max<double>(n - 1, 1);
+  Eigen::VectorXd q(n), w(n), y(n), t(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    t(i) = profile.time[i] - middle;
+    y(i) = 2 * t(i) / span;
+    double log = 0;
+    for (Eigen::Index k = envelope.size() - 1; k >= 0; --k) {
+      log = log * y(i) + envelope(k);
+    }
+    const double scale = std::exp(log);
+    q(i) = profile.light[i] / scale;
+    w(i) = 1 / std::hypot(profile.sigma[i] / scale, modelError * std::min(1.0, q(i)));
+  }
+  Eigen::MatrixXd A(n, 4);
+  A.col(0) = w;
+  A.col(1) = w.cwiseProduct(y);
+  const Eigen::VectorXd b = w.cwiseProduct(q);
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> plain = A.leftCols<2>();
+  const Eigen::Vector2d plainFit = (plain.transpose() * plain).ldlt().solve(plain.transpose() * b);
+  const double without = (b - plain * plainFit).squaredNorm();
+
+  const double lowest = 0.7 / span;
+  const double highest = 0.5 * n / span;
+  const double step = 0.1 / span;
+  std::vector<Sinusoid> all;
+  for (double f = lowest; f <= highest + 0.5 * step; f += step) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double angle = 2 * M_PI * f * t(i);
+      A(i, 2) = w(i) * std::cos(angle);
+      A(i, 3) = w(i) * std::sin(angle);
+    }
+    const Eigen::Matrix4d normal = A.transpose() * A + 1e-9 * Eigen::Matrix4d::Identity();
+    const Eigen::Vector4d right = A.transpose() * b;
+    const Eigen::Vector4d x = normal.ldlt().solve(right);
+    const double gain = without - (b.squaredNorm() - x.dot(right));
+    all.push_back({f, std::atan2(x(3), x(2)) / (2 * M_PI), gain});
+  }
+  std::vector<Sinusoid> maxima;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if ((i == 0 || all[i].gain >= all[i - 1].gain) &&
+        (i + 1 == all.size() || all[i].gain > all[i + 1].gain)) {
+      maxima.push_back(all[i]);
+    }
+  }
+  std::sort(maxima.begin(), maxima.end(),
+            [](const Sinusoid &a, const Sinusoid &b) { return a.gain > b.gain; });
+  return maxima;
+}
+
+std::optional<vpStripeStarts::Pulses> vpStripeStarts::edges(const vpStripeProfile &profile,
+                                                            const Eigen::VectorXd &envelope)
+{
+  struct Edge {
+    double time; // s, from the middle of the profile
+    bool rising;
+  };
+  static const double half = 0.5,
+                      off = 0.2; // of the envelope; a crossing counts once the light is off by that
+  const size_t n = profile.light.size();
+  const double middle = 0.5 * (profile.time.front() + profile.time.back());
+  auto share = [&](size_t i) {
+    return profile.light[i] / std::exp(polynomial(envelope, scaledLine(profile, i)));
+  };
+  std::vector<Edge> found;
+  const bool backwards = profile.time.back() < profile.time.front();
+  auto at = [&](size_t k) { return backwards ? n - 1 - k : k; };
+  double before = share(at(0));
+  bool lit = before > half;
+  size_t latest = 0; // last line on the side that it is on
+  double latestShare = before;
+  for (size_t k = 1; k < n; ++k) {
+    const double now = share(at(k));
+    if ((now > half) == lit) {
+      latest = k;
+      latestShare = now;
+    } else if (std::abs(now - half) > off || (k + 1 < n && (share(at(k + 1)) > half) != lit)) {
+      const double way = (half - latestShare) / (now - latestShare);
+      const double from = profile.time[at(latest)], to = profile.time[at(k)];
+      found.push_back({from + std::clamp(way, 0.0, 1.0) * (to - from) - middle, !lit});
+      lit = !lit;
+      latest = k;
+      latestShare = now;
+    }
+  }
+  if (found.size() < 3) {
+    return std::nullopt;
+  }
+  // Unknown: start of the pulse with the first rise, period, length of a pulse.
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(found.size()), 3);
+  Eigen::VectorXd b(A.rows());
+  int pulse = found.front().rising ? -1 : 0;
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    pulse += found[static_cast<size_t>(i)].rising ? 1 : 0;
+    A.row(i) << 1, pulse, found[static_cast<size_t>(i)].rising ? 0 : 1;
+    b(i) = found[static_cast<size_t>(i)].time;
+  }
+  const Eigen::Vector3d x = A.colPivHouseholderQr().solve(b);
+  const double period = x(1), length = x(2);
+  if (!(period > 0 && length > 0.01 * period && length < 0.99 * period)) {
+    return std::nullopt;
+  }
+  static const double agree = 0.15; // periods, root mean square
+  if ((A * x - b).norm() > agree * period * std::sqrt(static_cast<double>(found.size()))) {
+    return std::nullopt;
+  }
+  return Pulses{1 / period, -x(0) / period, length / period};
+}
+
+END_VISP_NAMESPACE

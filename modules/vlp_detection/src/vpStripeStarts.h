@@ -1,0 +1,61 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpStripeStarts_h
+#define vpStripeStarts_h
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <visp3/vlp_detection/vpStripeAnalyzer.h>
+
+BEGIN_VISP_NAMESPACE
+
+//! Where a fit of a blinking lamp to its profile may start.
+namespace vpStripeStarts
+{
+
+/*!
+  Lines of the bright stripes: alternating highs and lows, each standing out from the one before by four
+  standard deviations and by three tenths of itself. Works alike for stripes of a few grey levels and of two
+  hundred.
+*/
+std::vector<size_t> peaks(const vpStripeProfile &profile);
+
+//! Polynomial of the given order through the logarithms of the peaks' heights, over the line scaled to [-1,
+//! 1].
+Eigen::VectorXd envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks, int order);
+
+struct Sinusoid {
+  double frequency; // Hz
+  double phase;     // periods, of its maximum, at the middle of the profile
+  double gain;      // in chi-square over a lamp without stripes
+};
+
+/*!
+  Least-squares periodogram of the profile with its envelope divided out: at each frequency a sinusoid beside
+  a level and a slope. Local maxima, the best first.
+*/
+std::vector<Sinusoid> periodogram(const vpStripeProfile &profile, const Eigen::VectorXd &envelope,
+                                  double modelError);
+
+struct Pulses {
+  double frequency; // Hz
+  double phase;     // periods, at the middle of the profile: a pulse begins where it is whole
+  double duty;
+};
+
+/*!
+  Pulses by the times at which the profile crosses half its envelope, where the stripes are wide enough to
+  show them: least squares of rises at t0 + k T and falls at t0 + (k + duty) T. Nothing where three edges or
+  more do not agree on that.
+*/
+std::optional<Pulses> edges(const vpStripeProfile &profile, const Eigen::VectorXd &envelope);
+
+} // namespace vpStripeStarts
+
+END_VISP_NAMESPACE
+
+#endif
