@@ -215,7 +215,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     pwm->integrate();
     take(features, *pwm, false);
   }
-  static const double wellExplained = 0.02;
+  static const double wellExplained = 0.05;
   if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
     std::optional<vpWaveformFit> two = fitTwoPulse(profile, candidates, settings, envelope);
     if (two && two->misfit() < maxMisfit && (!pwm || two->misfit() < 0.5 * pwm->misfit())) {

@@ -34,9 +34,11 @@ std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
 {
   static const double share = 0.3;
   static const double sigmas = 6;
-  static const double ofTheLast = 0.25; // in a long dark gap, noise rises far
+  // In a long dark gap noise rises far, and so does what little light there is of the neighbours.
+  static const double ofTheLast = 0.08, ofAll = 0.012;
   std::vector<size_t> peaks;
   const std::vector<double> &p = profile.light;
+  const double brightest = p.empty() ? 0 : *std::max_element(p.begin(), p.end());
   size_t high = 0, low = 0;
   bool rising = true;
   for (size_t i = 1; i < p.size(); ++i) {
@@ -52,7 +54,7 @@ std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
     } else {
       if (p[i] < p[low]) {
         low = i;
-      } else if (p[i] - p[low] > std::max({least, share * p[i], ofTheLast * p[high]})) {
+      } else if (p[i] - p[low] > std::max({least, share * p[i], ofTheLast * p[high], ofAll * brightest})) {
         high = i;
         rising = true;
       }
@@ -200,11 +202,8 @@ std::optional<vpStripeStarts::Pulses> vpStripeStarts::edges(const vpStripeProfil
   if (!(period > 0 && length > 0.01 * period && length < 0.99 * period)) {
     return std::nullopt;
   }
-  static const double agree = 0.15; // periods, root mean square
-  if ((A * x - b).norm() > agree * period * std::sqrt(static_cast<double>(found.size()))) {
-    return std::nullopt;
-  }
-  return Pulses{1 / period, -x(0) / period, length / period};
+  const double irregularity = (A * x - b).norm() / (period * std::sqrt(static_cast<double>(found.size())));
+  return Pulses{1 / period, -x(0) / period, length / period, found.size(), irregularity};
 }
 
 END_VISP_NAMESPACE

@@ -45,6 +45,8 @@ struct Pulses {
   double frequency; // Hz
   double phase;     // periods, at the middle of the profile: a pulse begins where it is whole
   double duty;
+  size_t edges;
+  double irregularity; // periods, root mean square of the edges' times about their own
 };
 
 /*!

@@ -469,20 +469,19 @@ int vpWaveformFit::degreesOfFreedom() const
 
 double vpWaveformFit::misfit() const
 {
-  static const double unevenness = 0.3; // share of the envelope that it may be off by
+  const auto n = static_cast<double>(m_wave.size());
   double mean = 0;
-  for (double wave : m_wave) {
-    mean += wave / static_cast<double>(m_wave.size());
+  for (double light : m_profile->light) {
+    mean += light / n;
   }
   double power = 0, left = 0;
   for (size_t i = 0; i < m_wave.size(); ++i) {
-    const double height = std::max(envelope(i), 1e-9);
-    const double residual = m_profile->light[i] - m_coefficient[0] - height * m_wave[i];
-    const double excess = std::max(0.0, (std::abs(residual) - 3 * m_profile->sigma[i]) / height - unevenness);
-    left += std::min(excess * excess, 1.0);
-    power += (m_wave[i] - mean) * (m_wave[i] - mean);
+    const double residual = m_profile->light[i] - m_coefficient[0] - envelope(i) * m_wave[i];
+    const double noise = m_profile->sigma[i];
+    left += residual * residual - noise * noise;
+    power += (m_profile->light[i] - mean) * (m_profile->light[i] - mean);
   }
-  return left / std::max(power, 1e-9);
+  return std::max(0.0, left) / std::max(power, 1e-9);
 }
 
 END_VISP_NAMESPACE

@@ -63,8 +63,7 @@ public:
   double sigma(Parameter p) const { return m_sigma(p); }
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
-  //! Light where the fit has none or the other way round: squared residuals beyond noise and unevenness as a
-  //! share of the stripes' power.
+  //! Share of the stripes' power left unexplained, beyond what noise explains.
   double misfit() const;
 
 private:

@@ -32,24 +32,25 @@ struct VISP_EXPORT vpStripeProfile {
 };
 
 /*!
-  What the stripes say: maximum likelihood over the line profile.
+  What the stripes say: maximum likelihood over the line profile, and the posterior about it.
 
-  A lamp's light on the line exposed about t is o + exp(c_0 + c_1 y + ...) S(t): the waveform averaged over
-  the exposure, which weighs harmonic k by sinc(k f T_e), times the emitter's envelope along the lines, a
-  polynomial in its logarithm. A periodogram gives the starts; Gauss-Newton then fits frequency, phase, duty,
-  exposure, offset and envelope together. The exposure has the rig's value as prior, since blur and a phone's
-  tone curve soften the edges as well. The variance of a line is that of its pixels plus a share of its light,
-  for all that the model leaves out.
+  A lamp's light on the line exposed about t is o + E(y) S(t): the waveform averaged over the exposure, which
+  weighs harmonic k by sinc(k f T_e), times the emitter's envelope along the lines. Starts come from the edges
+  of the stripes where they show, and from a periodogram. Least squares then fits frequency, phase, duty,
+  exposure, offset and envelope together; mean and standard deviation are those of the posterior, which is no
+  bell where lines leave gaps between their exposures. The exposure has the rig's value as prior, since blur
+  and a phone's tone curve soften the edges as well. The variance of a line is that of its pixels plus shares
+  of its light and of its neighbours', for all that the model leaves out.
 */
 class VISP_EXPORT vpStripeAnalyzer
 {
 public:
   double modelError = 0.03;       // share of a line's light that the model may be off by, standard deviation
   double exposureTolerance = 0.5; // standard deviation of the exposure about the rig's, as a share of it
-  double maxMisfit = 0.05;        // share of the stripes' power that may contradict a pwm or twoPulse lamp
-  double minModulation = 0.05;    // depth of stripes below which a lamp counts as unmodulated
-  bool searchTwoPulses = true;    // off where no lamp of the map is one: a search of tens of milliseconds
-  double minSignificance = 30;    // gain in chi-square by which a sinusoid has to beat a plain lamp
+  double maxMisfit = 0.13; // share of the stripes' power that a pwm or twoPulse lamp may leave unexplained
+  double minModulation = 0.05; // depth of stripes below which a lamp counts as unmodulated
+  bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
+  double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
 
   //! Signal, frequency, duty, phase difference, stripes, modulation, misfit; area is left to the caller.
   vpStripeFeatures analyze(const vpStripeProfile &profile) const;
