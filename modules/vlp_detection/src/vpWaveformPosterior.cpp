@@ -1,0 +1,137 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpWaveformFit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! Inverse of the normal distribution, to 1e-8 or so (Beasley and Springer 1977, Moro 1995).
+double normalQuantile(double p)
+{
+  static const double a[] = {2.50662823884, -18.61500062529, 41.39119773534, -25.44106049637};
+  static const double b[] = {-8.47351093090, 23.08336743743, -21.06224101826, 3.13082909833};
+  static const double c[] = {0.3374754822726147, 0.9761690190917186, 0.1607979714918209,
+                             0.0276438810333863, 0.0038405729373609, 0.0003951896511919,
+                             0.0000321767881768, 0.0000002888167364, 0.0000003960315187};
+  const double y = p - 0.5;
+  if (std::abs(y) < 0.42) {
+    const double r = y * y;
+    return y * (((a[3] * r + a[2]) * r + a[1]) * r + a[0]) /
+           ((((b[3] * r + b[2]) * r + b[1]) * r + b[0]) * r + 1);
+  }
+  const double r = std::log(-std::log(y > 0 ? 1 - p : p));
+  double x = c[8];
+  for (int k = 7; k >= 0; --k) {
+    x = c[k] + r * x;
+  }
+  return y < 0 ? -x : x;
+}
+} // namespace
+
+void vpWaveformFit::integrate()
+{
+  // What the model leaves out is alike on neighbouring lines: they say less together than each says alone.
+  double along = 0, before = 0;
+  for (size_t i = 0; i < m_wave.size(); ++i) {
+    const double residual =
+        std::sqrt(m_weight[i]) * (m_profile->light[i] - m_coefficient[0] - envelope(i) * m_wave[i]);
+    along += i > 0 ? residual * before : 0;
+    before = residual;
+  }
+  const double alike = along / std::max(m_chiSquare, 1e-12);
+  const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
+  // A variance told from few residuals may be any.
+  const double degrees = degreesOfFreedom();
+  const double inflation = std::max(1.0, together * m_chiSquare / degrees) * (1 + 6 / (degrees * degrees));
+
+  // Where no line feels an edge, it lies within half the distance of two lines, about.
+  Vector reach = Vector::Ones();
+  reach(phase) = reach(duty) = reach(phaseDifference) = 0.5 * m_line * m_x(frequency);
+  reach(frequency) = reach(phase) / m_half;
+  reach(exposure) = m_settings.exposureTolerance * m_profile->exposure;
+  const Matrix wide = reach.cwiseAbs2().cwiseInverse().asDiagonal();
+  static const double gap = 1.15; // exposures from line to line
+  Posterior posterior{m_x, (m_curvature / inflation + wide).inverse(), 0};
+  static const int few = 64, many = 128; // samples
+  static const double good = 0.4;        // share of them that count
+  if (m_line < gap * m_profile->exposure) {
+    posterior = sampled(posterior, few, inflation);
+  }
+  if (posterior.effective < good) {
+    // Not bell-shaped, and the minimum may lie at a wall of it: from a flattened posterior down to itself.
+    posterior = {m_x, (m_curvature / (32 * inflation) + wide).inverse(), 0};
+    for (double temperature : {32.0, 8.0, 2.0, 1.0, 1.0}) {
+      posterior = sampled(posterior, many, inflation * temperature);
+    }
+  }
+  m_x = posterior.mean;
+  m_sigma = posterior.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  m_cost = cost(m_x, true);
+}
+
+/*!
+  Mean and covariance of exp(-cost / (2 \e temperature)), by samples from a normal distribution wider than \e
+  from, each weighted by how much it was drawn too often.
+*/
+vpWaveformFit::Posterior vpWaveformFit::sampled(const Posterior &from, int samples, double temperature)
+{
+  static const double wider = 1.8; // variance of the samples
+  const Eigen::LLT<Matrix> root(wider * from.covariance);
+  if (root.info() != Eigen::Success) {
+    return from;
+  }
+  std::vector<Vector> places;
+  std::vector<double> logs;
+  for (int k = 0; k < samples; ++k) {
+    // Kronecker sequence of the generalised golden ratio in five dimensions (Roberts 2018): even, and the
+    // same each time.
+    static const double ratio = 1.1673039782614187;
+    Vector normal;
+    double power = 1;
+    for (int p = 0; p < parameters; ++p) {
+      power /= ratio;
+      const double turn = 0.5 + (k + 1) * power;
+      normal(p) = isFree(p) ? normalQuantile(std::clamp(turn - std::floor(turn), 1e-6, 1 - 1e-6)) : 0;
+    }
+    const Vector x = from.mean + root.matrixL() * normal;
+    Vector possible = x;
+    keepPossible(possible);
+    if (possible == x) {
+      places.push_back(x);
+      logs.push_back(-0.5 * cost(x, false) / temperature + 0.5 * normal.squaredNorm());
+    }
+  }
+  if (places.empty()) {
+    return from;
+  }
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0, squares = 0;
+  Vector first = Vector::Zero();
+  Matrix second = Matrix::Zero();
+  for (size_t k = 0; k < places.size(); ++k) {
+    const double weight = std::exp(logs[k] - most);
+    const Vector apart = places[k] - from.mean;
+    sum += weight;
+    squares += weight * weight;
+    first += weight * apart;
+    second += weight * apart * apart.transpose();
+  }
+  first /= sum;
+  Posterior posterior{from.mean + first, second / sum - first * first.transpose(),
+                      sum * sum / squares / samples};
+  // Few samples that count make a narrow cloud out of any.
+  const double counted = std::max(1.0, sum * sum / squares);
+  posterior.covariance += from.covariance / (1 + counted * counted / 16);
+  return posterior;
+}
+
+END_VISP_NAMESPACE
