@@ -14,6 +14,7 @@
 #include <visp3/vlp_core/vpCsvTable.h>
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpPoseText.h>
+#include <visp3/vlp_evaluation/vpFixLog.h>
 
 #include "common/vpPictureFile.h"
 #include "common/vpVlpOverlay.h"
@@ -24,8 +25,6 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr const char *fixesHeader =
-    "timestamp_s,x,y,z,roll,pitch,yaw,sigma_x,sigma_y,sigma_z,sigma_yaw,cov_xy,lamps,state,compute_s";
 constexpr const char *seenHeader =
     "timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted";
 
@@ -56,13 +55,13 @@ std::string field(double value)
   return std::isfinite(value) ? vpNumberText(value) : std::string();
 }
 
-std::string row(const std::vector<std::string> &fields)
+std::string listed(const std::vector<std::string> &fields)
 {
   std::string text;
   for (size_t i = 0; i < fields.size(); ++i) {
     text += (i == 0 ? "" : ",") + vpCsvTable::field(fields[i]);
   }
-  return text + "\n";
+  return text;
 }
 
 //! Frames of one name in two folders, or of a video, differ by their index.
@@ -83,7 +82,7 @@ bool isSure(const vpVlpFix &fix)
 
 vpLocateOutputs::vpLocateOutputs(const vpLocateOptions &options, std::function<int()> closed)
     : m_posesToStdout(options.posesToStdout()), m_overlay(options.overlay),
-      m_poses(open(options.poses, vpTumHeader)), m_fixes(open(options.fixes, fixesHeader)),
+      m_poses(open(options.poses, vpTumHeader)), m_fixes(open(options.fixes, listed(vpFixLog::columns()))),
       m_seen(open(options.seen, seenHeader))
 {
   if (options.display) {
@@ -154,7 +153,7 @@ void vpLocateOutputs::writeFix(const vpLocatedFrame &located)
   }
   fields[13] = !fix.valid ? "none" : (fix.ambiguous ? "ambiguous" : "fix");
   fields[14] = vpNumberText(located.compute);
-  m_fixes->stream() << row(fields);
+  m_fixes->stream() << listed(fields) << "\n";
 }
 
 void vpLocateOutputs::writeSeen(const vpLocatedFrame &located)

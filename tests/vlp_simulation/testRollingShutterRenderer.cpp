@@ -269,17 +269,23 @@ TEST(RollingShutterRenderer, RowsOfAMovingLampAreDisplacedAsTheRowTimesSay)
   }
 }
 
+//! The scene as delivered by software that resizes the sensor's picture.
+cv::Mat_<float> resized(vpPictureResize::Method method, unsigned int width, unsigned int height)
+{
+  Scene scene;
+  vpVlpRig &rig = scene.camera.rig;
+  rig.resize.method = method;
+  rig.resize.sourceWidth = rig.width;
+  rig.resize.sourceHeight = rig.height;
+  rig.camera = rig.resize.delivered(rig.camera, width, height);
+  rig.width = width;
+  rig.height = height;
+  return scene.fast();
+}
+
 TEST(RollingShutterRenderer, NearestResizeTakesTheSensorsOwnPixels)
 {
-  Scene sensor;
-  Scene small;
-  small.camera.rig.resize.method = vpPictureResize::Method::nearest;
-  small.camera.rig.resize.sourceWidth = 84;
-  small.camera.rig.resize.sourceHeight = 76;
-  small.camera.rig.width = 33;
-  small.camera.rig.height = 30;
-  small.camera.rig.camera = small.camera.rig.resize.delivered(sensor.camera.rig.camera, 33, 30);
-  const cv::Mat_<float> whole = sensor.fast(), part = small.fast();
+  const cv::Mat_<float> whole = Scene().fast(), part = resized(vpPictureResize::Method::nearest, 33, 30);
   for (int v = 0; v < 30; ++v)
     for (int u = 0; u < 33; ++u)
       EXPECT_NEAR(part(v, u), whole(int(v / (30 / 76.)), int(u / (33 / 84.))), 0.02);
@@ -287,15 +293,7 @@ TEST(RollingShutterRenderer, NearestResizeTakesTheSensorsOwnPixels)
 
 TEST(RollingShutterRenderer, AreaResizeIsTheMeanOfTheSensorsPixels)
 {
-  Scene sensor;
-  Scene small;
-  small.camera.rig.resize.method = vpPictureResize::Method::area;
-  small.camera.rig.resize.sourceWidth = 84;
-  small.camera.rig.resize.sourceHeight = 76;
-  small.camera.rig.width = 42;
-  small.camera.rig.height = 38;
-  small.camera.rig.camera = small.camera.rig.resize.delivered(sensor.camera.rig.camera, 42, 38);
-  const cv::Mat_<float> whole = sensor.fast(), part = small.fast();
+  const cv::Mat_<float> whole = Scene().fast(), part = resized(vpPictureResize::Method::area, 42, 38);
   for (int v = 0; v < 38; ++v)
     for (int u = 0; u < 42; ++u)
       EXPECT_NEAR(part(v, u), 0.25 * cv::sum(whole(cv::Rect(2 * u, 2 * v, 2, 2)))[0], 1e-3);

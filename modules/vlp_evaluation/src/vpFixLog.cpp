@@ -15,9 +15,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const std::vector<std::string> columns = {"timestamp_s", "x",      "y",       "z",       "roll",
-                                          "pitch",       "yaw",    "sigma_x", "sigma_y", "sigma_z",
-                                          "sigma_yaw",   "cov_xy", "lamps",   "state",   "compute_s"};
 enum Column : size_t {
   timestamp,
   x,
@@ -76,9 +73,17 @@ void readPose(const vpCsvTable &table, size_t row, vpLoggedFix &fix)
 }
 } // namespace
 
+const std::vector<std::string> &vpFixLog::columns()
+{
+  static const std::vector<std::string> names = {"timestamp_s", "x",      "y",       "z",       "roll",
+                                                 "pitch",       "yaw",    "sigma_x", "sigma_y", "sigma_z",
+                                                 "sigma_yaw",   "cov_xy", "lamps",   "state",   "compute_s"};
+  return names;
+}
+
 vpFixLog vpFixLog::load(const std::string &filename)
 {
-  const vpCsvTable table = vpCsvTable::load(filename, columns);
+  const vpCsvTable table = vpCsvTable::load(filename, columns());
   vpFixLog log;
   for (size_t row = 0; row < table.rows(); ++row) {
     vpLoggedFix fix;

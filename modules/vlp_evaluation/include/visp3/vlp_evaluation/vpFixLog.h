@@ -47,6 +47,9 @@ struct VISP_EXPORT vpFixLog {
   */
   static vpFixLog load(const std::string &filename);
 
+  //! Names of its columns.
+  static const std::vector<std::string> &columns();
+
   //! Frames with a position that is the only one.
   size_t count() const;
 
