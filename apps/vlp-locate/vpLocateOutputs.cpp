@@ -159,10 +159,11 @@ void vpLocateOutputs::writeFix(const vpLocatedFrame &located)
 void vpLocateOutputs::writeSeen(const vpLocatedFrame &located)
 {
   for (const vpLampObservation &lamp : located.location.observations) {
-    m_seen->stream() << row({vpNumberText(located.location.timestamp), located.frame.name, lamp.id,
-                             field(lamp.point.x()), field(lamp.point.y()), field(lamp.outline.diameter()),
-                             field(lamp.features.frequency), field(lamp.features.duty),
-                             field(lamp.confidence), lamp.accepted ? "1" : "0"});
+    m_seen->stream() << listed({vpNumberText(located.location.timestamp), located.frame.name, lamp.id,
+                                field(lamp.point.x()), field(lamp.point.y()), field(lamp.outline.diameter()),
+                                field(lamp.features.frequency), field(lamp.features.duty),
+                                field(lamp.confidence), lamp.accepted ? "1" : "0"})
+                     << "\n";
   }
 }
 
