@@ -39,8 +39,10 @@ jobs()
     echo "$scenario $scenario all"
     echo "$scenario-two $scenario two"
   done
+  seed=0
   for scenario in paper-a paper-b paper-c paper-d paper-e paper-f; do
-    echo "$scenario $scenario all --seed ${#scenario}"
+    seed=$((seed + 1))
+    echo "$scenario $scenario all --seed $seed"
   done
   for seed in $(seq "$rigs"); do
     echo "typical-paper-still-$seed paper-still all --typical --seed $seed --every 4"
