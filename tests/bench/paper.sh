@@ -104,8 +104,11 @@ for row in 'a A y=0.0051x+1.0714' 'b B x=-0.0171y-1.2286' 'c C y=-0.01058x+0.829
   read -r scenario label paper <<<"$row"
   line "run $label, fitted line, cm" "$paper" "$(grep -o '[xy] = .*' "$out/paper-$scenario/table.txt" | head -1)" ""
 done
-line "share of frames with a fix, 36 points (800x600; 2048x1536), %" "" \
-  "$(value paper-points fix_share 100); $(value paper-points-full fix_share 100)" "$(over_rigs paper-points fix_share 100)"
+line "share of frames with a fix, %: points 800x600 at 43 us, two lamps, at 215 us, two lamps" "" \
+  "$(value paper-points fix_share 100); $(value paper-points-two fix_share 100); $(value paper-points-200us fix_share 100); $(value paper-points-200us-two fix_share 100)" \
+  "$(over_rigs paper-points fix_share 100)"
+line "the same at 2048x1536" "" \
+  "$(value paper-points-full fix_share 100); $(value paper-points-full-two fix_share 100); $(value paper-points-full-200us fix_share 100); $(value paper-points-full-200us-two fix_share 100)" ""
 for row in 'a A 361.9' 'b B 353.8' 'c C 120.7' 'd D 122.1' 'e E 797.0' 'f F 808.5'; do
   read -r scenario label paper <<<"$row"
   line "run $label, mean time of a fix, ms (other machines)" "$paper" "$(value "paper-$scenario" compute_mean 1000)" ""

@@ -58,7 +58,8 @@ void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile,
                                     const std::vector<vpStripeStarts::Sinusoid> &candidates,
                                     const std::optional<vpStripeStarts::Pulses> &pulses,
-                                    const vpWaveformFit::Settings &settings, const Eigen::VectorXd &envelope)
+                                    const vpWaveformFit::Settings &settings,
+                                    const std::vector<double> &envelope)
 {
   std::optional<vpWaveformFit> best;
   if (pulses) {
@@ -94,7 +95,8 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile,
 
 std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
                                          const std::vector<vpStripeStarts::Sinusoid> &candidates,
-                                         vpWaveformFit::Settings settings, const Eigen::VectorXd &envelope)
+                                         vpWaveformFit::Settings settings,
+                                         const std::vector<double> &envelope)
 {
   settings.twoPulse = true;
   std::optional<vpWaveformFit> best;
@@ -200,7 +202,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   settings.exposureTolerance = exposureTolerance;
   settings.envelopeOrder =
       std::clamp(static_cast<int>(peaks.size()) - 1, 0, brightest > evenEmitter * dimmest ? 4 : 2);
-  const Eigen::VectorXd envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
+  const std::vector<double> envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
   std::vector<vpStripeStarts::Sinusoid> candidates =
       vpStripeStarts::periodogram(profile, envelope, modelError);
   if (candidates.empty() || candidates.front().gain < minSignificance ||

@@ -19,15 +19,6 @@ double scaledLine(const vpStripeProfile &profile, size_t i)
   const double first = profile.time.front(), last = profile.time.back();
   return (2 * profile.time[i] - first - last) / std::max(std::abs(last - first), 1e-12);
 }
-
-double polynomial(const Eigen::VectorXd &coefficients, double y)
-{
-  double sum = 0;
-  for (Eigen::Index k = coefficients.size() - 1; k >= 0; --k) {
-    sum = sum * y + coefficients(k);
-  }
-  return sum;
-}
 } // namespace
 
 std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
@@ -66,15 +57,14 @@ std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
   return peaks;
 }
 
-Eigen::VectorXd vpStripeStarts::envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks,
-                                         int order)
+std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks,
+                                             int order)
 {
-  const auto n = static_cast<Eigen::Index>(peaks.size());
-  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(order + 1);
-  if (n == 0) {
-    coefficients(0) = std::log(std::max(1.0, *std::max_element(profile.light.begin(), profile.light.end())));
-    return coefficients;
+  if (peaks.empty()) {
+    const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
+    return std::vector<double>(profile.light.size(), std::max(1.0, brightest));
   }
+  const auto n = static_cast<Eigen::Index>(peaks.size());
   const int fitted = static_cast<int>(std::min<Eigen::Index>(order, n - 1));
   Eigen::MatrixXd A(n + fitted, fitted + 1);
   Eigen::VectorXd b(n + fitted);
@@ -90,12 +80,20 @@ Eigen::VectorXd vpStripeStarts::envelope(const vpStripeProfile &profile, const s
   for (int k = 1; k <= fitted; ++k) {
     A(n + k - 1, k) = 0.1; // as flat as the peaks allow
   }
-  coefficients.head(fitted + 1) = A.colPivHouseholderQr().solve(b);
-  return coefficients;
+  const Eigen::VectorXd coefficients = A.colPivHouseholderQr().solve(b);
+  std::vector<double> envelope;
+  for (size_t line = 0; line < profile.light.size(); ++line) {
+    double log = 0;
+    for (int k = fitted; k >= 0; --k) {
+      log = log * scaledLine(profile, line) + coefficients(k);
+    }
+    envelope.push_back(std::exp(std::clamp(log, -20.0, 20.0)));
+  }
+  return envelope;
 }
 
 std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripeProfile &profile,
-                                                                  const Eigen::VectorXd &envelope,
+                                                                  const std::vector<double> &envelope,
                                                                   double modelError)
 {
   const auto n = static_cast<Eigen::Index>(profile.light.size());
@@ -106,11 +104,7 @@ std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripe
   for (Eigen::Index i = 0; i < n; ++i) {
     t(i) = profile.time[i] - middle;
     y(i) = 2 * t(i) / span;
-    double log = 0;
-    for (Eigen::Index k = envelope.size() - 1; k >= 0; --k) {
-      log = log * y(i) + envelope(k);
-    }
-    const double scale = std::exp(log);
+    const double scale = envelope[static_cast<size_t>(i)];
     q(i) = profile.light[i] / scale;
     w(i) = 1 / std::hypot(profile.sigma[i] / scale, modelError * std::min(1.0, q(i)));
   }
@@ -151,19 +145,17 @@ std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripe
 }
 
 std::optional<vpStripeStarts::Pulses> vpStripeStarts::edges(const vpStripeProfile &profile,
-                                                            const Eigen::VectorXd &envelope)
+                                                            const std::vector<double> &envelope)
 {
   struct Edge {
     double time; // s, from the middle of the profile
     bool rising;
   };
-  static const double half = 0.5,
-                      off = 0.2; // of the envelope; a crossing counts once the light is off by that
+  static const double half = 0.5; // of the envelope
+  static const double off = 0.2;  // from there, before a crossing counts
   const size_t n = profile.light.size();
   const double middle = 0.5 * (profile.time.front() + profile.time.back());
-  auto share = [&](size_t i) {
-    return profile.light[i] / std::exp(polynomial(envelope, scaledLine(profile, i)));
-  };
+  auto share = [&](size_t i) { return profile.light[i] / envelope[i]; };
   std::vector<Edge> found;
   const bool backwards = profile.time.back() < profile.time.front();
   auto at = [&](size_t k) { return backwards ? n - 1 - k : k; };
@@ -202,8 +194,11 @@ std::optional<vpStripeStarts::Pulses> vpStripeStarts::edges(const vpStripeProfil
   if (!(period > 0 && length > 0.01 * period && length < 0.99 * period)) {
     return std::nullopt;
   }
-  const double irregularity = (A * x - b).norm() / (period * std::sqrt(static_cast<double>(found.size())));
-  return Pulses{1 / period, -x(0) / period, length / period, found.size(), irregularity};
+  static const double agree = 0.15; // periods, root mean square
+  if ((A * x - b).norm() > agree * period * std::sqrt(static_cast<double>(found.size()))) {
+    return std::nullopt;
+  }
+  return Pulses{1 / period, -x(0) / period, length / period};
 }
 
 END_VISP_NAMESPACE

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
 #include <visp3/vlp_detection/vpStripeAnalyzer.h>
 
 BEGIN_VISP_NAMESPACE
@@ -24,9 +23,11 @@ namespace vpStripeStarts
 */
 std::vector<size_t> peaks(const vpStripeProfile &profile);
 
-//! Polynomial of the given order through the logarithms of the peaks' heights, over the line scaled to [-1,
-//! 1].
-Eigen::VectorXd envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks, int order);
+/*!
+  How bright the lamp is at each line while it is lit, grey levels: the exponential of a polynomial of the
+  given order through the logarithms of the peaks' heights.
+*/
+std::vector<double> envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks, int order);
 
 struct Sinusoid {
   double frequency; // Hz
@@ -38,15 +39,13 @@ struct Sinusoid {
   Least-squares periodogram of the profile with its envelope divided out: at each frequency a sinusoid beside
   a level and a slope. Local maxima, the best first.
 */
-std::vector<Sinusoid> periodogram(const vpStripeProfile &profile, const Eigen::VectorXd &envelope,
+std::vector<Sinusoid> periodogram(const vpStripeProfile &profile, const std::vector<double> &envelope,
                                   double modelError);
 
 struct Pulses {
   double frequency; // Hz
   double phase;     // periods, at the middle of the profile: a pulse begins where it is whole
   double duty;
-  size_t edges;
-  double irregularity; // periods, root mean square of the edges' times about their own
 };
 
 /*!
@@ -54,7 +53,7 @@ struct Pulses {
   show them: least squares of rises at t0 + k T and falls at t0 + (k + duty) T. Nothing where three edges or
   more do not agree on that.
 */
-std::optional<Pulses> edges(const vpStripeProfile &profile, const Eigen::VectorXd &envelope);
+std::optional<Pulses> edges(const vpStripeProfile &profile, const std::vector<double> &envelope);
 
 } // namespace vpStripeStarts
 

@@ -46,9 +46,9 @@ struct Averaged {
 } // namespace
 
 vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
-                             const Eigen::VectorXd &envelope)
+                             const std::vector<double> &envelope)
     : m_profile(&profile), m_settings(settings),
-      m_linear(2 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2))
+      m_linear(2 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2)), m_given(envelope)
 {
   const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
   const size_t n = profile.light.size();
@@ -56,15 +56,9 @@ vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &set
   m_half = std::max(0.5 * (*last - *first), 1e-12);
   m_line = 2 * m_half / std::max<double>(1, static_cast<double>(n) - 1);
   for (size_t i = 0; i < n; ++i) {
-    const double y = (profile.time[i] - m_middle) / m_half;
-    double log = 0;
-    for (Eigen::Index k = envelope.size() - 1; k >= 0; --k) {
-      log = log * y + envelope(k);
-    }
-    m_given.push_back(std::exp(std::clamp(log, -20.0, 20.0)));
     // A dark line has some light of its neighbours, by blur and compression.
     static const double spill = 0.01; // share of theirs, standard deviation
-    const double missed = std::hypot(m_settings.modelError * profile.light[i], spill * m_given.back());
+    const double missed = std::hypot(m_settings.modelError * profile.light[i], spill * m_given[i]);
     m_weight.push_back(1 / (profile.sigma[i] * profile.sigma[i] + missed * missed));
   }
   m_wave.resize(n);

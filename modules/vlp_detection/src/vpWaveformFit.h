@@ -15,8 +15,8 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   A blinking lamp fitted to a profile: light = offset + envelope(y) S(f t + phase), S the one- or two-pulse
-  waveform averaged over the exposure in closed form, the envelope a polynomial in y, the line scaled to [-1,
-  1] over the profile.
+  waveform averaged over the exposure in closed form, the envelope a given one times a polynomial in y, the
+  line scaled to [-1, 1] over the profile.
 
   Offset and envelope are linear and solved for at each step (variable projection, Golub and Pereyra 1973);
   Levenberg and Marquardt's method does the rest. Where the lines leave gaps between their exposures, an edge
@@ -38,9 +38,9 @@ public:
     double exposureTolerance = 0.5;
   };
 
-  //! \param envelope How bright the lamp is along the lines, about: coefficients of the logarithm's
-  //! polynomial in y.
-  vpWaveformFit(const vpStripeProfile &profile, const Settings &settings, const Eigen::VectorXd &envelope);
+  //! \param envelope How bright the lamp is at each line while it is lit, about, grey levels.
+  vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
+                const std::vector<double> &envelope);
 
   /*!
     Least squares from a start. \param f Hz. \param startPhase Periods, at the middle of the profile. \param k
@@ -101,13 +101,12 @@ private:
   double m_startFrequency = 0; // Hz
   bool m_freeExposure = true;
   std::vector<double> m_weight; // 1 / variance of each line
-  std::vector<double> m_given;  // envelope
+  std::vector<double> m_given;  // envelope, grey levels
   Vector m_x = Vector::Zero();
   Vector m_sigma = Vector::Zero();
   Matrix m_curvature = Matrix::Zero(); // of half the cost, priors included
   double m_cost = 0;
   double m_chiSquare = 0; // of the profile alone
-  double m_alike = 0;     // correlation of neighbouring residuals
   // Of the latest cost(): at each line the wave, its derivatives; and the linear parameters.
   std::vector<double> m_wave;
   std::vector<Vector> m_derivative;

@@ -47,7 +47,9 @@ class VISP_EXPORT vpStripeAnalyzer
 public:
   double modelError = 0.03;       // share of a line's light that the model may be off by, standard deviation
   double exposureTolerance = 0.5; // standard deviation of the exposure about the rig's, as a share of it
-  double maxMisfit = 0.13; // share of the stripes' power that a pwm or twoPulse lamp may leave unexplained
+  //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained. Between the little that
+  //! there is: pwm lamps of phones leave up to 0.09, coded lamps seen for less than a word from 0.165 on.
+  double maxMisfit = 0.13;
   double minModulation = 0.05; // depth of stripes below which a lamp counts as unmodulated
   bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
   double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
