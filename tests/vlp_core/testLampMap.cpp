@@ -49,6 +49,50 @@ void expectSame(const vpLampMap &one, const vpLampMap &other)
     EXPECT_EQ(a.modulation.code, b.modulation.code);
   }
 }
+TEST(LampMap, LampsThatBlinkAlikeShareAnIdentifier)
+{
+  vpLampMap map;
+  auto add = [&map](const vpModulation &modulation, double ppm = 50) {
+    vpLamp lamp;
+    lamp.id = std::to_string(map.lamps.size());
+    lamp.modulation = modulation;
+    lamp.oscillatorPpm = ppm;
+    map.lamps.push_back(lamp);
+  };
+  vpModulation pulses;
+  pulses.kind = vpModulation::Kind::pwm;
+  pulses.frequency = 2000;
+  pulses.duty = 0.5;
+  vpModulation other = pulses;
+  other.duty = 0.3;
+  vpModulation word;
+  word.kind = vpModulation::Kind::word;
+  word.code = vpModulation::Code::ook;
+  word.chipRate = 8000;
+  word.bits = "0010111";
+  vpModulation turned = word; // the same light, begun elsewhere
+  turned.bits = "1110010";
+  vpModulation reversed = word;
+  reversed.bits = "1110100";
+  add(pulses);
+  add(word);
+  add(other);
+  add(pulses);
+  add({});
+  add(turned);
+  add(reversed);
+  add(pulses, 10000);
+
+  const std::vector<vpIdentifier> identifiers = map.identifiers();
+  ASSERT_EQ(identifiers.size(), 5u);
+  EXPECT_EQ(identifiers[0].lamps, (std::vector<size_t>{0, 3}));
+  EXPECT_EQ(identifiers[1].lamps, (std::vector<size_t>{1, 5}));
+  EXPECT_EQ(identifiers[2].lamps, (std::vector<size_t>{2}));
+  EXPECT_EQ(identifiers[3].lamps, (std::vector<size_t>{6}));
+  EXPECT_EQ(identifiers[4].lamps, (std::vector<size_t>{7}));
+  EXPECT_EQ(identifiers[4].oscillatorPpm, 10000);
+}
+
 } // namespace
 
 TEST(LampMap, ReadsWhatTheFileSays)

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <unordered_set>
 
 #include <visp3/vlp_core/vpAtomicFile.h>
 #include <visp3/vlp_core/vpNumberText.h>
@@ -178,13 +180,40 @@ const vpLamp *vpLampMap::find(const std::string &id) const
   return found == lamps.end() ? nullptr : &*found;
 }
 
+std::vector<vpIdentifier> vpLampMap::identifiers() const
+{
+  // Lamps of one identifier repeat at the same rate: only those need to be compared.
+  std::multimap<double, size_t> byRate;
+  std::vector<vpIdentifier> identifiers;
+  for (size_t i = 0; i < lamps.size(); ++i) {
+    const vpLamp &lamp = lamps[i];
+    const double rate = lamp.modulation.repetitionFrequency();
+    if (lamp.modulation.kind == vpModulation::Kind::unmodulated) {
+      continue;
+    }
+    const auto [first, last] = byRate.equal_range(rate);
+    const auto same = std::find_if(first, last, [&](const auto &entry) {
+      const vpIdentifier &other = identifiers[entry.second];
+      return other.oscillatorPpm == lamp.oscillatorPpm && other.modulation.sameSignal(lamp.modulation);
+    });
+    if (same != last) {
+      identifiers[same->second].lamps.push_back(i);
+    } else {
+      byRate.emplace(rate, identifiers.size());
+      identifiers.push_back({lamp.modulation, lamp.oscillatorPpm, {i}});
+    }
+  }
+  return identifiers;
+}
+
 vpLampMap vpLampMap::load(const std::string &filename)
 {
   const vpYamlNode top = vpYamlNode::load(filename);
   vpLampMap map;
+  std::unordered_set<std::string> ids;
   for (const vpYamlNode &node : top.mappings("lamps")) {
     vpLamp lamp = vpLamp::read(node);
-    if (map.find(lamp.id)) {
+    if (!ids.insert(lamp.id).second) {
       node.fail("id", vpShown(lamp.id) + " a second time, expected an id of its own");
     }
     map.lamps.push_back(std::move(lamp));

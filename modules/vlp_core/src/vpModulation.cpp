@@ -56,6 +56,27 @@ double vpModulation::repetitionFrequency() const
   return 0;
 }
 
+bool vpModulation::sameSignal(const vpModulation &other) const
+{
+  if (kind != other.kind) {
+    return false;
+  }
+  switch (kind) {
+  case Kind::pwm:
+    return frequency == other.frequency && duty == other.duty;
+  case Kind::twoPulse:
+    return frequency == other.frequency && duty == other.duty && phaseDifference == other.phaseDifference;
+  case Kind::word: {
+    const std::string mine = chips(), others = other.chips();
+    return chipRate == other.chipRate && mine.size() == others.size() &&
+           (mine + mine).find(others) != std::string::npos;
+  }
+  case Kind::unmodulated:
+    break;
+  }
+  return true;
+}
+
 std::complex<double> vpModulation::harmonic(int k) const
 {
   switch (kind) {

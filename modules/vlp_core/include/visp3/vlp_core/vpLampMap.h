@@ -34,9 +34,23 @@ struct VISP_EXPORT vpLamp {
   static vpLamp read(const vpYamlNode &node);
 };
 
+//! Lamps of a map that blink alike: their stripes tell them from all others, and only their places from each
+//! other.
+struct VISP_EXPORT vpIdentifier {
+  vpModulation modulation;
+  double oscillatorPpm = 50;
+  std::vector<size_t> lamps; // indices into vpLampMap::lamps, ascending
+};
+
 //! The lamps of a place, as read from and written to a lamps.yaml.
 struct VISP_EXPORT vpLampMap {
   std::vector<vpLamp> lamps;
+
+  /*!
+    The identifiers that the lamps carry, in the order in which the lamps first show them: lamps of equal
+    modulation (vpModulation::sameSignal()) and equal oscillator share one. Unmodulated lamps have none.
+  */
+  std::vector<vpIdentifier> identifiers() const;
 
   //! The lamp of that id, or nullptr.
   const vpLamp *find(const std::string &id) const;

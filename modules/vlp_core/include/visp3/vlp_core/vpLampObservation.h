@@ -54,21 +54,34 @@ struct VISP_EXPORT vpLampOutline {
 
 //! What the stripes of one lamp say: the paper's features and the frequency itself.
 struct VISP_EXPORT vpStripeFeatures {
-  //! coded: strongly modulated, yet neither pwm nor twoPulse explains the stripes.
+  //! coded: strongly modulated, yet neither pwm nor twoPulse explains the stripes: a word.
   enum class Signal { unmodulated, pwm, twoPulse, coded };
 
   Signal signal = Signal::unmodulated;
   unsigned int stripes = 0;                                    // bright stripes
   double area = 0;                                             // px of the lamp's region
-  double frequency = std::numeric_limits<double>::quiet_NaN(); // Hz
+  double frequency = std::numeric_limits<double>::quiet_NaN(); // Hz, at which the signal repeats
   double frequencySigma =
       std::numeric_limits<double>::quiet_NaN();           // Hz, of the estimate alone, row time exact
   double duty = std::numeric_limits<double>::quiet_NaN(); // lit share of the period
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
   double phaseDifference = std::numeric_limits<double>::quiet_NaN(); // periods, twoPulse only
   double phaseDifferenceSigma = std::numeric_limits<double>::quiet_NaN();
-  double modulation = 0; // depth of the stripes, 0 to 1
-  double misfit = 0;     // share of the stripes' power that the chosen signal leaves unexplained
+  /*!
+    Of a coded signal that was seen for one whole repetition or more: its chips, '1' lit, in the order of
+    time, of all rotations the lexicographically greatest (where the word begins, the stripes do not say). One
+    chip lasts 1 / (frequency * chips.size()). Empty where the word is not known.
+  */
+  std::string chips;
+  double chipsConfidence = 0; // probability that all of them are right
+  double modulation = 0;      // depth of the stripes, 0 to 1
+  double misfit = 0;          // share of the stripes' power that the chosen signal leaves unexplained
+};
+
+//! An identifier of the map that a lamp-like region may show.
+struct VISP_EXPORT vpLedIdCandidate {
+  size_t identifier = 0;  // index into vpLampMap::identifiers()
+  double probability = 0; // that the region is a lamp of it
 };
 
 /*!
@@ -82,7 +95,8 @@ struct VISP_EXPORT vpLampObservation {
   bool cut = false;     // the picture's border cuts the lamp
   double saturated = 0; // share of its lit pixels at the end of the grey scale
   vpStripeFeatures features;
-  std::string id;        // of the map's lamp; empty: none of them, or more than one
+  std::vector<vpLedIdCandidate> candidates; // the likeliest first
+  std::string id;                           // of the map's lamp; empty: none of them, or more than one
   double confidence = 0; // probability of that id; without an id, of being none of the map's lamps
   bool accepted = false; // counts for the position
   std::string remark;    // why it has no id or does not count; empty where there is nothing to say

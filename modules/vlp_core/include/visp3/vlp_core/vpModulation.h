@@ -45,6 +45,10 @@ struct VISP_EXPORT vpModulation {
   //! Rate at which the signal repeats, Hz; 0 for an unmodulated lamp.
   double repetitionFrequency() const;
 
+  //! Whether both lamps emit the same light but for a shift in time: words that are rotations of each other
+  //! do.
+  bool sameSignal(const vpModulation &other) const;
+
   /*!
     Fourier coefficient c_k of the light power p(t) = sum over all k of c_k exp(2 i pi k f t), with f the
     repetition frequency and t = 0 at the start of the first pulse (of the first chip of a word). An unset
