@@ -79,7 +79,7 @@ TEST(LedIdRecognizer, TwoLampsFit)
   const vpLampMap map{{lamp("A", 2000), lamp("B", 2010)}};
   const vpLampObservation seen = recognized(map, stripes(2005, 10));
   EXPECT_TRUE(seen.id.empty());
-  EXPECT_NE(seen.remark.find("2 lamps"), std::string::npos) << seen.remark;
+  EXPECT_NE(seen.remark.find("2 identifiers"), std::string::npos) << seen.remark;
 }
 
 TEST(LedIdRecognizer, DutyTellsLampsOfOneFrequencyApart)
@@ -136,6 +136,86 @@ TEST(LedIdRecognizer, CodedAndSteadyRegionsHaveNoId)
   EXPECT_NE(recognized(map, seen).remark.find("coded"), std::string::npos);
   seen.features.signal = vpStripeFeatures::Signal::unmodulated;
   EXPECT_TRUE(recognized(map, seen).id.empty());
+}
+
+TEST(LedIdRecognizer, LampsInViewCalibrateTheRowTimeForEachOther)
+{
+  // Row time 0.5 % too short, known to 1 %: alone each lamp could be any of its neighbours.
+  vpLampMap map;
+  for (int k = 0; k < 30; ++k) {
+    map.lamps.push_back(lamp(std::to_string(k), 1000 * std::pow(1.0037, k * (k + 1) / 2))); // uneven steps
+  }
+  const double seenFaster = 1.005;
+  std::vector<vpLampObservation> seen;
+  for (size_t k : {3, 10, 17, 24}) {
+    seen.push_back(stripes(seenFaster * map.lamps[k].modulation.frequency, 0.7));
+  }
+  const vpLedIdRecognizer recognizer(map, shutter(0.01));
+  vpLampObservation alone = seen.front();
+  recognizer.recognize(alone);
+  EXPECT_TRUE(alone.id.empty()) << alone.id;
+  EXPECT_GT(alone.candidates.size(), 1u);
+  const vpRowTimeError error = recognizer.recognize(seen);
+  EXPECT_EQ(seen[0].id, "3");
+  EXPECT_EQ(seen[1].id, "10");
+  EXPECT_EQ(seen[2].id, "17");
+  EXPECT_EQ(seen[3].id, "24");
+  EXPECT_NEAR(error.mean, -0.005, 4 * error.sigma); // lines longer than stated make slower stripes
+  EXPECT_LT(error.sigma, 5e-4);
+}
+
+TEST(LedIdRecognizer, AStrangerAmongLampsIsNoLampOfTheMap)
+{
+  const vpLampMap map{{lamp("A", 2000), lamp("B", 2500), lamp("C", 3100)}};
+  std::vector<vpLampObservation> seen{stripes(2000, 0.7), stripes(2500, 0.7), stripes(3120, 0.7)};
+  vpLedIdRecognizer(map, shutter(0.01)).recognize(seen);
+  EXPECT_EQ(seen[0].id, "A");
+  EXPECT_EQ(seen[1].id, "B");
+  EXPECT_TRUE(seen[2].id.empty()) << "0.65 % off, where the others leave the row time 0.03 %";
+  vpLampObservation alone = stripes(3120, 0.7);
+  vpLedIdRecognizer(map, shutter(0.01)).recognize(alone);
+  EXPECT_EQ(alone.id, "C");
+}
+
+TEST(LedIdRecognizer, LampsThatBlinkAlikeAreLeftToGeometry)
+{
+  const vpLampMap map{{lamp("A", 2000), lamp("B", 3000), lamp("A2", 2000)}};
+  const vpLampObservation seen = recognized(map, stripes(2001, 2));
+  EXPECT_TRUE(seen.id.empty());
+  ASSERT_EQ(seen.candidates.size(), 1u);
+  EXPECT_EQ(seen.candidates[0].identifier, 0u);
+  EXPECT_GT(seen.candidates[0].probability, 0.99);
+  EXPECT_NE(seen.remark.find("alike"), std::string::npos) << seen.remark;
+}
+
+vpLampObservation coded(const std::string &chips, double repetition)
+{
+  vpLampObservation observation;
+  observation.features.signal = vpStripeFeatures::Signal::coded;
+  observation.features.chips = chips;
+  observation.features.chipsConfidence = 0.9999;
+  observation.features.frequency = repetition;
+  observation.features.frequencySigma = 1e-4 * repetition;
+  return observation;
+}
+
+TEST(LedIdRecognizer, WordsMatchWhereverTheyBegin)
+{
+  vpLamp word = lamp("W", 0), other = lamp("X", 0);
+  for (vpLamp *of : {&word, &other}) {
+    of->modulation.kind = vpModulation::Kind::word;
+    of->modulation.chipRate = 8000;
+    of->modulation.code = vpModulation::Code::ook;
+  }
+  word.modulation.bits = "01010011";
+  other.modulation.bits = "01010111";
+  const vpLampMap map{{word, other, lamp("A", 1000)}};
+  EXPECT_EQ(recognized(map, coded("11010100", 1000)).id, "W");
+  EXPECT_EQ(recognized(map, coded("11101010", 1000)).id, "X");
+  EXPECT_TRUE(recognized(map, coded("11010010", 1000)).id.empty());  // another word
+  EXPECT_TRUE(recognized(map, coded("11010100", 1005)).id.empty());  // another rate
+  EXPECT_TRUE(recognized(map, coded("1101010011", 800)).id.empty()); // a longer one
+  EXPECT_TRUE(recognized(map, coded("", 1000)).id.empty());          // not known
 }
 
 TEST(LedIdRecognizer, EmptyMapKnowsNobody)

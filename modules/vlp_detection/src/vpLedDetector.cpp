@@ -69,6 +69,13 @@ void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObserv
   lamp.saturated = pixels > 0 ? static_cast<double>(white) / pixels : 0;
 }
 
+//! Whether two regions blink as one lamp of the map.
+bool alike(const vpLampObservation &a, const vpLampObservation &b)
+{
+  return !a.candidates.empty() && !b.candidates.empty() &&
+         a.candidates.front().identifier == b.candidates.front().identifier;
+}
+
 //! The vertical of a robot that stands level, in the camera's frame.
 Eigen::Vector3d verticalInCamera(const vpHomogeneousMatrix &bMc)
 {
@@ -118,7 +125,10 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I)
   for (const vpLedRoi &roi : rois) {
     m_observations.push_back(observe(picture, roi));
   }
-  joinPieces(picture, rois);
+  m_rowTimeError = recognizer.recognize(m_observations);
+  if (joinPieces(picture, rois)) {
+    m_rowTimeError = recognizer.recognize(m_observations);
+  }
   std::stable_sort(m_observations.begin(), m_observations.end(),
                    [](const vpLampObservation &a, const vpLampObservation &b) {
                      return a.features.area > b.features.area;
@@ -137,17 +147,19 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I)
 /*!
   Regions that touch and blink as one lamp are pieces of it: a glow has no outline that would say so.
 */
-void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois)
+bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois)
 {
+  bool any = false;
   for (size_t i = 0; i < rois.size(); ++i) {
     for (size_t k = i + 1; k < rois.size(); ++k) {
-      if (m_observations[i].id.empty() || m_observations[i].id != m_observations[k].id ||
-          (rois[i].box & rois[k].box).area() == 0) {
+      if (!alike(m_observations[i], m_observations[k]) || (rois[i].box & rois[k].box).area() == 0) {
         continue;
       }
       const vpLedRoi whole = joined(rois[i], rois[k]);
-      const vpLampObservation lamp = observe(picture, whole);
-      if (lamp.id == m_observations[i].id) {
+      vpLampObservation lamp = observe(picture, whole);
+      recognizer.recognize(lamp);
+      if (alike(lamp, m_observations[i])) {
+        any = true;
         rois[i] = whole;
         m_observations[i] = lamp;
         rois.erase(rois.begin() + static_cast<long>(k));
@@ -156,6 +168,7 @@ void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRo
       }
     }
   }
+  return any;
 }
 
 vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi) const
@@ -170,7 +183,6 @@ vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpL
   lamp.covariance = lamp.outline.centreCovariance;
   lamp.time = m_timing.middleAt(picture.transposed ? lamp.point.x() : lamp.point.y());
   lamp.cut = roi.cutAcross || roi.cutAlong;
-  recognizer.recognize(lamp);
   return lamp;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 BEGIN_VISP_NAMESPACE
@@ -15,115 +16,309 @@ namespace
 
 using Signal = vpStripeFeatures::Signal;
 
-//! One feature against what a lamp predicts: squared distance and density.
-struct Distance {
-  double squared = 0;
-  double density = 1;
-
-  void add(double difference, double sigma)
-  {
-    const double z = difference / sigma;
-    squared = std::max(squared, z * z); // each feature has to fit by itself
-    density *= std::exp(-0.5 * z * z) / (std::sqrt(2 * M_PI) * sigma);
-  }
-};
-
-bool sameKind(Signal signal, vpModulation::Kind kind)
-{
-  return (signal == Signal::pwm && kind == vpModulation::Kind::pwm) ||
-         (signal == Signal::twoPulse && kind == vpModulation::Kind::twoPulse);
-}
+const double leastProbability = 1e-3; // of a candidate that is handed on
+const double farthestRowTime = 4.5;   // standard deviations of the row time that are looked at
 
 double square(double x)
 {
   return x * x;
 }
 
+double normalDensity(double z, double sigma)
+{
+  return std::exp(-0.5 * z * z) / (std::sqrt(2 * M_PI) * sigma);
+}
+
+bool sameKind(Signal signal, vpModulation::Kind kind)
+{
+  return (signal == Signal::pwm && kind == vpModulation::Kind::pwm) ||
+         (signal == Signal::twoPulse && kind == vpModulation::Kind::twoPulse) ||
+         (signal == Signal::coded && kind == vpModulation::Kind::word);
+}
+
+bool sameWord(const std::string &chips, const std::string &others)
+{
+  return chips.size() == others.size() && (chips + chips).find(others) != std::string::npos;
+}
+
+//! Density of what was seen under a lamp that the map does not know: any frequency of two decades, any duty,
+//! any phase difference, any word alike.
+double unknownDensity(const vpStripeFeatures &seen)
+{
+  static const double logRange = std::log(100.0);
+  double density = 1 / (seen.frequency * logRange);
+  if (seen.signal == Signal::twoPulse) {
+    density *= 2; // phase differences end at half a period
+  } else if (seen.signal == Signal::coded) {
+    density *= std::exp2(-static_cast<double>(seen.chips.size()));
+  }
+  return density;
+}
+
+//! Why the features name no lamp, whatever the map; empty where they may.
+std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt)
+{
+  if (seen.signal == Signal::unmodulated) {
+    return "no stripes";
+  }
+  if (seen.signal == Signal::coded && seen.chips.empty()) {
+    return "coded, and no whole word seen";
+  }
+  if (!(seen.frequencySigma < maxFrequencyDoubt * seen.frequency)) {
+    return "too few stripes for a frequency";
+  }
+  return "";
+}
+
 } // namespace
 
-vpLedIdRecognizer::vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutter &shutter) : m_map(map)
+//! An identifier that may have been seen, the row time's error aside.
+struct vpLedIdRecognizer::Candidate {
+  size_t identifier;
+  double frequency; // Hz
+  double sigma;     // Hz, of the frequency seen about it, row time exact
+  double weight;    // prior probability, times the density of all features but the frequency
+  double probability = 0;
+};
+
+//! One lamp as the recogniser works on it.
+struct vpLedIdRecognizer::Sight {
+  bool readable = false;
+  double frequency = 0; // Hz
+  double unknown = 0;   // prior probability times density of a lamp that the map does not know
+  std::vector<Candidate> candidates;
+
+  double density(const Candidate &candidate, double rowTimeError) const
+  {
+    return normalDensity((frequency - candidate.frequency * (1 + rowTimeError)) / candidate.sigma,
+                         candidate.sigma);
+  }
+  //! Of what was seen, whichever lamp it is.
+  double evidence(double rowTimeError) const
+  {
+    double sum = unknown;
+    for (const Candidate &candidate : candidates) {
+      sum += candidate.weight * density(candidate, rowTimeError);
+    }
+    return sum;
+  }
+  //! Probabilities of the candidates, where row-time errors have these weights, which add up to 1.
+  void judge(const std::vector<double> &errors, const std::vector<double> &weights, double gate);
+};
+
+void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const std::vector<double> &weights,
+                                     double gate)
+{
+  double mean = 0, variance = 0;
+  for (size_t k = 0; k < errors.size(); ++k) {
+    mean += weights[k] * errors[k];
+    variance += weights[k] * square(errors[k]);
+  }
+  variance = std::max(0.0, variance - square(mean));
+  double sum = unknown;
+  for (Candidate &candidate : candidates) {
+    const double expected = candidate.frequency * (1 + mean);
+    const double sigma = std::hypot(candidate.sigma, candidate.frequency * std::sqrt(variance));
+    candidate.probability = 0;
+    if (std::abs(frequency - expected) < gate * sigma) {
+      for (size_t k = 0; k < errors.size(); ++k) {
+        candidate.probability += weights[k] * candidate.weight * density(candidate, errors[k]);
+      }
+    }
+    sum += candidate.probability;
+  }
+  for (Candidate &candidate : candidates) {
+    candidate.probability /= sum;
+  }
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                  [](const Candidate &c) { return !(c.probability > leastProbability); }),
+                   candidates.end());
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate &a, const Candidate &b) { return a.probability > b.probability; });
+}
+
+vpLedIdRecognizer::vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutter &shutter)
+    : m_map(map), m_identifiers(map.identifiers()), m_byFrequency(m_identifiers.size())
 {
   if (shutter.rowTime > 0) {
     m_relativeRowTime = shutter.rowTimeSigma / shutter.rowTime;
   }
-}
-
-std::vector<vpLedIdRecognizer::Match>
-vpLedIdRecognizer::candidates(const vpLampObservation &observation) const
-{
-  const vpStripeFeatures &seen = observation.features;
-  std::vector<Match> matches;
-  for (const vpLamp &lamp : m_map.lamps) {
-    const vpModulation &sent = lamp.modulation;
-    if (!sameKind(seen.signal, sent.kind)) {
-      continue;
-    }
-    Distance distance;
-    distance.add(seen.frequency - sent.frequency,
-                 std::sqrt(square(seen.frequencySigma) + square(m_relativeRowTime * sent.frequency) +
-                           square(1e-6 * lamp.oscillatorPpm * sent.frequency)));
-    if (sent.duty) {
-      // Saturation widens the lit stripes.
-      static const double bySaturation = 0.15;
-      distance.add(seen.duty - *sent.duty, std::sqrt(square(seen.dutySigma) + square(dutyError) +
-                                                     square(bySaturation * observation.saturated)));
-    }
-    if (sent.kind == vpModulation::Kind::twoPulse) {
-      distance.add(seen.phaseDifference - sent.phaseDifference,
-                   std::hypot(seen.phaseDifferenceSigma, phaseError));
-    }
-    if (distance.squared < gate * gate) {
-      matches.push_back({&lamp, distance.density});
-    }
-  }
-  return matches;
-}
-
-void vpLedIdRecognizer::recognize(vpLampObservation &observation) const
-{
-  const vpStripeFeatures &seen = observation.features;
-  observation.id.clear();
-  observation.confidence = 1;
-  if (seen.signal == Signal::unmodulated) {
-    observation.remark = "no stripes";
-    return;
-  }
-  if (seen.signal == Signal::coded) {
-    observation.remark = "coded, neither one nor two pulses a period";
-    return;
-  }
-  if (!(seen.frequencySigma < maxFrequencyDoubt * seen.frequency)) {
-    observation.remark = "too few stripes for a frequency";
-    return;
-  }
-  const std::vector<Match> matches = candidates(observation);
-  if (matches.empty()) {
-    observation.remark = "fits no lamp of the map";
-    return;
-  }
-  // A lamp that the map does not know: any frequency of two decades, any duty, any phase difference.
-  static const double logRange = std::log(100.0);
-  double unknown = 1 / (seen.frequency * logRange);
-  if (seen.signal == Signal::twoPulse) {
-    unknown *= 2;
-  }
-  double sum = unknownPrior * unknown;
-  const double prior = (1 - unknownPrior) / static_cast<double>(m_map.lamps.size());
-  for (const Match &match : matches) {
-    sum += prior * match.likelihood;
-  }
-  const Match &best = *std::max_element(matches.begin(), matches.end(), [](const Match &a, const Match &b) {
-    return a.likelihood < b.likelihood;
+  std::iota(m_byFrequency.begin(), m_byFrequency.end(), size_t{0});
+  std::sort(m_byFrequency.begin(), m_byFrequency.end(), [this](size_t a, size_t b) {
+    return m_identifiers[a].modulation.repetitionFrequency() <
+           m_identifiers[b].modulation.repetitionFrequency();
   });
-  const double probability = prior * best.likelihood / sum;
-  if (probability >= minConfidence) {
-    observation.id = best.lamp->id;
-    observation.confidence = probability;
+}
+
+//! Where duty, phase difference or word of the identifier fit what was seen.
+void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp, size_t index) const
+{
+  const vpStripeFeatures &seen = lamp.features;
+  const vpIdentifier &identifier = m_identifiers[index];
+  const vpModulation &sent = identifier.modulation;
+  if (!sameKind(seen.signal, sent.kind)) {
     return;
   }
-  observation.confidence = unknownPrior * unknown / sum;
-  observation.remark = matches.size() == 1 ? "hardly fits lamp " + best.lamp->id
-                                           : "fits " + std::to_string(matches.size()) + " lamps of the map";
+  Candidate candidate;
+  candidate.identifier = index;
+  candidate.frequency = sent.repetitionFrequency();
+  candidate.sigma = std::hypot(seen.frequencySigma, 1e-6 * identifier.oscillatorPpm * candidate.frequency);
+  candidate.weight = (1 - unknownPrior) * static_cast<double>(identifier.lamps.size()) /
+                     static_cast<double>(m_map.lamps.size());
+  auto fits = [&](double difference, double sigma) {
+    candidate.weight *= normalDensity(difference / sigma, sigma);
+    return std::abs(difference) < gate * sigma;
+  };
+  // Saturation widens the lit stripes.
+  static const double bySaturation = 0.15;
+  if (sent.duty && !fits(seen.duty - *sent.duty, std::sqrt(square(seen.dutySigma) + square(dutyError) +
+                                                           square(bySaturation * lamp.saturated)))) {
+    return;
+  }
+  if (sent.kind == vpModulation::Kind::twoPulse &&
+      !fits(seen.phaseDifference - sent.phaseDifference, std::hypot(seen.phaseDifferenceSigma, phaseError))) {
+    return;
+  }
+  if (sent.kind == vpModulation::Kind::word) {
+    if (!sameWord(seen.chips, sent.chips())) {
+      return;
+    }
+    candidate.weight *= seen.chipsConfidence;
+  }
+  sight.candidates.push_back(candidate);
+}
+
+vpLedIdRecognizer::Sight vpLedIdRecognizer::sightOf(const vpLampObservation &lamp) const
+{
+  const vpStripeFeatures &seen = lamp.features;
+  Sight sight;
+  if (!unreadable(seen, maxFrequencyDoubt).empty()) {
+    return sight;
+  }
+  sight.readable = true;
+  sight.frequency = seen.frequency;
+  sight.unknown = unknownPrior * unknownDensity(seen);
+  // All that the gate may let pass; an oscillator of the map may be as wide as the range of frequencies.
+  for (size_t index : m_byFrequency) {
+    const vpIdentifier &identifier = m_identifiers[index];
+    const double f = identifier.modulation.repetitionFrequency();
+    const double reach = farthestRowTime * m_relativeRowTime * f +
+                         2 * gate * std::hypot(seen.frequencySigma, 1e-6 * identifier.oscillatorPpm * f);
+    if (std::abs(seen.frequency - f) < reach) {
+      addCandidate(sight, lamp, index);
+    }
+  }
+  return sight;
+}
+
+//! A grid of them, fine enough for the sharpest candidate.
+std::vector<double> vpLedIdRecognizer::rowTimeErrors(const std::vector<Sight> &sights) const
+{
+  if (!(m_relativeRowTime > 0)) {
+    return {0};
+  }
+  static const double ofSigma = 0.5;
+  static const int most = 4000; // to each side
+  const double reach = farthestRowTime * m_relativeRowTime;
+  double step = ofSigma * m_relativeRowTime;
+  for (const Sight &sight : sights) {
+    for (const Candidate &candidate : sight.candidates) {
+      step = std::min(step, ofSigma * candidate.sigma / candidate.frequency);
+    }
+  }
+  const int side = std::clamp(static_cast<int>(std::ceil(reach / std::max(step, 1e-12))), 1, most);
+  std::vector<double> errors;
+  for (int k = -side; k <= side; ++k) {
+    errors.push_back(reach * k / side);
+  }
+  return errors;
+}
+
+vpRowTimeError vpLedIdRecognizer::recognize(std::vector<vpLampObservation> &lamps) const
+{
+  std::vector<Sight> sights;
+  for (const vpLampObservation &lamp : lamps) {
+    sights.push_back(sightOf(lamp));
+  }
+  const std::vector<double> errors = rowTimeErrors(sights);
+  std::vector<std::vector<double>> logs; // of each lamp's evidence at each error
+  std::vector<double> together;
+  for (double error : errors) {
+    together.push_back(m_relativeRowTime > 0 ? -0.5 * square(error / m_relativeRowTime) : 0);
+  }
+  for (const Sight &sight : sights) {
+    logs.emplace_back(errors.size(), 0.0);
+    for (size_t k = 0; sight.readable && k < errors.size(); ++k) {
+      logs.back()[k] = std::log(sight.evidence(errors[k]));
+      together[k] += logs.back()[k];
+    }
+  }
+  auto normalised = [](std::vector<double> log) {
+    const double most = *std::max_element(log.begin(), log.end());
+    double sum = 0;
+    for (double &value : log) {
+      value = std::exp(value - most);
+      sum += value;
+    }
+    for (double &value : log) {
+      value /= sum;
+    }
+    return log;
+  };
+  for (size_t i = 0; i < lamps.size(); ++i) {
+    std::vector<double> others = together;
+    std::transform(others.begin(), others.end(), logs[i].begin(), others.begin(), std::minus<double>());
+    sights[i].judge(errors, normalised(std::move(others)), gate);
+    decide(lamps[i], sights[i]);
+  }
+  vpRowTimeError error;
+  const std::vector<double> weights = normalised(std::move(together));
+  for (size_t k = 0; k < errors.size(); ++k) {
+    error.mean -= weights[k] * errors[k]; // longer lines make slower stripes of the same lamp
+    error.sigma += weights[k] * square(errors[k]);
+  }
+  error.sigma = std::sqrt(std::max(0.0, error.sigma - square(error.mean)));
+  return error;
+}
+
+void vpLedIdRecognizer::recognize(vpLampObservation &lamp) const
+{
+  std::vector<vpLampObservation> alone{lamp};
+  recognize(alone);
+  lamp = alone.front();
+}
+
+void vpLedIdRecognizer::decide(vpLampObservation &lamp, const Sight &sight) const
+{
+  lamp.id.clear();
+  lamp.candidates.clear();
+  lamp.remark = unreadable(lamp.features, maxFrequencyDoubt);
+  lamp.confidence = 1; // of being none of them
+  if (!sight.readable) {
+    return;
+  }
+  for (const Candidate &candidate : sight.candidates) {
+    lamp.candidates.push_back({candidate.identifier, candidate.probability});
+    lamp.confidence = std::max(0.0, lamp.confidence - candidate.probability);
+  }
+  if (lamp.candidates.empty()) {
+    lamp.remark = lamp.features.signal == Signal::coded ? "coded, a word that the map does not have"
+                                                        : "fits no lamp of the map";
+    return;
+  }
+  const vpLedIdCandidate &best = lamp.candidates.front();
+  const std::vector<size_t> &carriers = m_identifiers[best.identifier].lamps;
+  const std::string first = m_map.lamps[carriers.front()].id;
+  if (best.probability < minConfidence) {
+    lamp.remark = lamp.candidates.size() == 1
+                      ? "hardly fits lamp " + first
+                      : "fits " + std::to_string(lamp.candidates.size()) + " identifiers of the map";
+  } else if (carriers.size() > 1) {
+    lamp.remark = "may be any of " + std::to_string(carriers.size()) + " lamps that blink alike, as " + first;
+  } else {
+    lamp.id = first;
+    lamp.confidence = best.probability;
+  }
 }
 
 END_VISP_NAMESPACE

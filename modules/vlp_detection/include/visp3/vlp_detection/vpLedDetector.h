@@ -53,13 +53,17 @@ public:
   //! Every lamp-like region of the last picture, the one with the largest lit area first.
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
+  //! What the lamps of the last picture say of the rig's row time.
+  const vpRowTimeError &rowTimeError() const { return m_rowTimeError; }
+
 private:
-  void joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
+  bool joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
   vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi) const;
 
   vpVlpRig m_rig;
   vpLineTiming m_timing;
   std::vector<vpLampObservation> m_observations;
+  vpRowTimeError m_rowTimeError;
 };
 
 END_VISP_NAMESPACE

@@ -5,27 +5,41 @@
 #ifndef vpLedIdRecognizer_h
 #define vpLedIdRecognizer_h
 
+#include <vector>
+
 #include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_core/vpLampObservation.h>
 #include <visp3/vlp_core/vpRollingShutter.h>
 
 BEGIN_VISP_NAMESPACE
 
+//! How far the row time is off, as the lamps of one frame tell it.
+struct VISP_EXPORT vpRowTimeError {
+  double mean = 0;  // true row time over the stated one, minus 1
+  double sigma = 0; // its standard deviation; the stated one's where no lamp tells more
+};
+
 /*!
   LED-ID recognition: which lamp of the map has these stripes.
 
-  The paper compares features with a database; here the comparison is a statistical distance. Each lamp of the
-  map predicts frequency, duty and phase difference; the squared distance d^2 to what was measured is a
-  chi-square under every stated doubt: the estimate's own, the row time's (common to all frequencies), the
-  lamp's oscillator, and what exposure and saturation do to a duty. A lamp within `gate` is a candidate; the
-  likelihoods of all candidates, and that of a lamp that the map does not know (a uniform one over all
-  frequencies and duties), give the probability of each. An id is given where one candidate has at least
-  `minConfidence`.
+  The paper compares features with a database; here every identifier of the map predicts frequency, duty and
+  phase difference, or a word and its rate, and Bayes' rule compares the map's identifiers with each other and
+  with a lamp that the map does not know (of any frequency, duty, phase difference or word alike).
+
+  Frequencies are measured in row times, whose relative error is common to all lamps in view. With it as d,
+  lamp a of frequency f_a is seen at f_a (1 + d) + e, e being the estimate's own error and the oscillator's.
+  The frame's evidence about d is p(d) times the product over its lamps of sum_a p(a) N(f - f_a (1 + d); e);
+  each lamp is judged by what all others leave of d, integrated on a grid. So two lamps of a rig whose row
+  time is known to 1 % calibrate it for each other.
+
+  An identifier that lies within `gate` standard deviations in every feature is a candidate. One that has at
+  least `minConfidence` and a single lamp gives the id. What several lamps of one identifier leave open, or
+  several candidates, is for geometry to decide: `candidates` hands them on.
 */
 class VISP_EXPORT vpLedIdRecognizer
 {
 public:
-  double gate = 4;                // standard deviations, on each feature and on all together
+  double gate = 3;                // standard deviations, on each feature
   double minConfidence = 0.95;    // probability below which no id is given
   double maxFrequencyDoubt = 0.1; // share of the frequency: less certain stripes are recognised as nothing
   double dutyError = 0.03;        // systematic error of a measured duty, standard deviation
@@ -34,18 +48,28 @@ public:
 
   vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutter &shutter);
 
-  //! Sets id, confidence and remark of \e observation from its features.
-  void recognize(vpLampObservation &observation) const;
+  //! Sets candidates, id, confidence and remark of all lamps seen in one frame from their features.
+  vpRowTimeError recognize(std::vector<vpLampObservation> &lamps) const;
+
+  //! The same of one lamp alone.
+  void recognize(vpLampObservation &lamp) const;
+
+  //! The identifiers of the map that candidates name.
+  const std::vector<vpIdentifier> &identifiers() const { return m_identifiers; }
 
 private:
-  struct Match {
-    const vpLamp *lamp;
-    double likelihood; // density over frequency (Hz), duty and phase difference (periods)
-  };
-  std::vector<Match> candidates(const vpLampObservation &observation) const;
+  struct Candidate;
+  struct Sight;
+
+  void addCandidate(Sight &sight, const vpLampObservation &lamp, size_t identifier) const;
+  Sight sightOf(const vpLampObservation &lamp) const;
+  std::vector<double> rowTimeErrors(const std::vector<Sight> &sights) const;
+  void decide(vpLampObservation &lamp, const Sight &sight) const;
 
   vpLampMap m_map;
-  double m_relativeRowTime = 0; // standard deviation of the row time as a share of it
+  std::vector<vpIdentifier> m_identifiers;
+  std::vector<size_t> m_byFrequency; // identifiers, the slowest first
+  double m_relativeRowTime = 0;      // standard deviation of the row time as a share of it
 };
 
 END_VISP_NAMESPACE

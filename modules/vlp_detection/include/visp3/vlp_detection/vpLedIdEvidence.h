@@ -1,0 +1,59 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLedIdEvidence_h
+#define vpLedIdEvidence_h
+
+#include <visp3/vlp_core/vpLampObservation.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  What several frames of one lamp say together: its evidence adds up over a track, so that frames decide what
+  one of them leaves open.
+
+  Lamp and camera share no clock, so each frame measures frequency, duty and phase difference anew, with
+  errors of its own: their mean, weighted by inverse variance, is the estimate of all frames. Errors that
+  frames share (the row time's, the oscillator's, the systematic one of a duty) do not shrink by repetition;
+  the recogniser adds them, once. A word that frames agree on is wrong only where all of them are.
+
+  \code
+  vpLedIdEvidence evidence;               // of one track
+  for (vpLampObservation &seen : track) { // one a frame
+    evidence.add(seen.features);
+    seen.features = evidence.features();
+    recognizer.recognize(seen);
+  }
+  \endcode
+*/
+class VISP_EXPORT vpLedIdEvidence
+{
+public:
+  double gate = 5; // standard deviations; a frame farther off shows another lamp, and evidence begins anew
+
+  /*!
+    \param seen One frame's. Features that say nothing (no stripes, a word not seen whole, too few stripes for
+    a frequency) count as no frame.
+    \return False where it contradicts what came before, which is then forgotten.
+  */
+  bool add(const vpStripeFeatures &seen);
+
+  //! Of all frames together; the last frame's where none said anything.
+  const vpStripeFeatures &features() const { return m_features; }
+
+  //! Frames that the features rest on.
+  unsigned int frames() const { return m_frames; }
+
+  void clear();
+
+private:
+  bool agrees(const vpStripeFeatures &seen) const;
+
+  vpStripeFeatures m_features;
+  unsigned int m_frames = 0;
+};
+
+END_VISP_NAMESPACE
+
+#endif

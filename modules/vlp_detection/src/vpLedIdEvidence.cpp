@@ -1,0 +1,85 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_detection/vpLedIdEvidence.h>
+
+#include <cmath>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+using Signal = vpStripeFeatures::Signal;
+
+bool saysSomething(const vpStripeFeatures &seen)
+{
+  return seen.signal != Signal::unmodulated && std::isfinite(seen.frequency) &&
+         seen.frequencySigma < seen.frequency && (seen.signal != Signal::coded || !seen.chips.empty());
+}
+
+//! Adds one estimate to the weighted mean of others.
+void average(double &mean, double &sigma, double value, double valueSigma)
+{
+  const double weight = 1 / (sigma * sigma), more = 1 / (valueSigma * valueSigma);
+  mean = (weight * mean + more * value) / (weight + more);
+  sigma = 1 / std::sqrt(weight + more);
+}
+} // namespace
+
+bool vpLedIdEvidence::agrees(const vpStripeFeatures &seen) const
+{
+  auto near = [this](double a, double sigma, double b, double other) {
+    return std::abs(a - b) < gate * std::hypot(sigma, other);
+  };
+  return seen.signal == m_features.signal && seen.chips == m_features.chips &&
+         near(seen.frequency, seen.frequencySigma, m_features.frequency, m_features.frequencySigma) &&
+         (seen.signal == Signal::coded ||
+          near(seen.duty, seen.dutySigma, m_features.duty, m_features.dutySigma)) &&
+         (seen.signal != Signal::twoPulse ||
+          near(seen.phaseDifference, seen.phaseDifferenceSigma, m_features.phaseDifference,
+               m_features.phaseDifferenceSigma));
+}
+
+bool vpLedIdEvidence::add(const vpStripeFeatures &seen)
+{
+  if (!saysSomething(seen)) {
+    if (m_frames == 0) {
+      m_features = seen;
+    }
+    return true;
+  }
+  if (m_frames == 0 || !agrees(seen)) {
+    const bool first = m_frames == 0;
+    m_features = seen;
+    m_frames = 1;
+    return first;
+  }
+  const vpStripeFeatures before = m_features;
+  m_features = seen; // stripes, area, modulation and misfit are those of the latest frame
+  m_features.frequency = before.frequency;
+  m_features.frequencySigma = before.frequencySigma;
+  average(m_features.frequency, m_features.frequencySigma, seen.frequency, seen.frequencySigma);
+  if (seen.signal == Signal::coded) {
+    m_features.chipsConfidence = 1 - (1 - before.chipsConfidence) * (1 - seen.chipsConfidence);
+  } else {
+    m_features.duty = before.duty;
+    m_features.dutySigma = before.dutySigma;
+    average(m_features.duty, m_features.dutySigma, seen.duty, seen.dutySigma);
+  }
+  if (seen.signal == Signal::twoPulse) {
+    m_features.phaseDifference = before.phaseDifference;
+    m_features.phaseDifferenceSigma = before.phaseDifferenceSigma;
+    average(m_features.phaseDifference, m_features.phaseDifferenceSigma, seen.phaseDifference,
+            seen.phaseDifferenceSigma);
+  }
+  ++m_frames;
+  return true;
+}
+
+void vpLedIdEvidence::clear()
+{
+  *this = vpLedIdEvidence();
+}
+
+END_VISP_NAMESPACE

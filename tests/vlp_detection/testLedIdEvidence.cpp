@@ -1,0 +1,138 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Evidence over frames: what one frame leaves open three decide, and what contradicts begins anew.
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_detection/vpLedIdEvidence.h>
+#include <visp3/vlp_detection/vpLedIdRecognizer.h>
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+using Signal = vpStripeFeatures::Signal;
+
+vpStripeFeatures stripes(double frequency, double sigma, double duty = 0.5, double dutySigma = 0.01)
+{
+  vpStripeFeatures seen;
+  seen.signal = Signal::pwm;
+  seen.frequency = frequency;
+  seen.frequencySigma = sigma;
+  seen.duty = duty;
+  seen.dutySigma = dutySigma;
+  return seen;
+}
+
+vpLampMap twoNeighbours(double apart)
+{
+  vpLampMap map;
+  for (double frequency : {2000.0, 2000.0 + apart}) {
+    vpLamp lamp;
+    lamp.id = map.lamps.empty() ? "A" : "B";
+    lamp.modulation.kind = vpModulation::Kind::pwm;
+    lamp.modulation.frequency = frequency;
+    lamp.oscillatorPpm = 5;
+    map.lamps.push_back(lamp);
+  }
+  return map;
+}
+
+TEST(LedIdEvidence, ThreeFramesDecideWhatOneLeavesOpen)
+{
+  const double sigma = 3;
+  const vpLampMap map = twoNeighbours(3 * sigma);
+  vpRollingShutter shutter;
+  shutter.rowTime = 40e-6;
+  const vpLedIdRecognizer recognizer(map, shutter);
+  std::mt19937_64 generator(4);
+  std::normal_distribution<double> noise(0, sigma);
+  const int tracks = 2000;
+  int afterOne = 0, afterThree = 0, wrong = 0;
+  for (int track = 0; track < tracks; ++track) {
+    vpLedIdEvidence evidence;
+    for (int frame = 1; frame <= 3; ++frame) {
+      evidence.add(stripes(2000 + noise(generator), sigma));
+      vpLampObservation seen;
+      seen.features = evidence.features();
+      recognizer.recognize(seen);
+      afterOne += frame == 1 && seen.id == "A";
+      afterThree += frame == 3 && seen.id == "A";
+      wrong += frame == 3 && seen.id == "B";
+    }
+  }
+  std::cout << "neighbours 3 sigma apart: " << 100. * afterOne / tracks
+            << " % have their id after one frame, " << 100. * afterThree / tracks << " % after three, "
+            << wrong << " of " << tracks << " a wrong one\n";
+  EXPECT_LT(afterOne, 0.8 * tracks);    // of both likelihoods 0.95 : 0.05 or better: Phi(1.5 - 0.98) = 0.70
+  EXPECT_GT(afterThree, 0.93 * tracks); // sigma / sqrt(3): Phi(2.6 - 0.57) = 0.98, less the gate
+  EXPECT_LE(wrong, 0.005 * tracks);     // Phi(-2.6 - 0.57) = 0.0008; 0.005 is 5 standard deviations beyond it
+}
+
+TEST(LedIdEvidence, MeanAndSigmaAreThoseOfAllFrames)
+{
+  vpLedIdEvidence evidence;
+  EXPECT_TRUE(evidence.add(stripes(1000, 1, 0.5, 0.02)));
+  EXPECT_TRUE(evidence.add(stripes(1003, 2, 0.52, 0.01)));
+  EXPECT_EQ(evidence.frames(), 2u);
+  EXPECT_NEAR(evidence.features().frequency, (4 * 1000 + 1003) / 5., 1e-9);
+  EXPECT_NEAR(evidence.features().frequencySigma, std::sqrt(1 / (1 + 0.25)), 1e-12);
+  EXPECT_NEAR(evidence.features().duty, (0.5 + 4 * 0.52) / 5, 1e-12);
+}
+
+TEST(LedIdEvidence, AnotherLampBeginsAnew)
+{
+  vpLedIdEvidence evidence;
+  evidence.add(stripes(1000, 1));
+  evidence.add(stripes(1001, 1));
+  EXPECT_FALSE(evidence.add(stripes(1050, 1)));
+  EXPECT_EQ(evidence.frames(), 1u);
+  EXPECT_EQ(evidence.features().frequency, 1050);
+  EXPECT_FALSE(evidence.add(stripes(1050, 1, 0.3)));
+  vpStripeFeatures two = stripes(1050, 1, 0.3);
+  two.signal = Signal::twoPulse;
+  two.phaseDifference = 0.3;
+  two.phaseDifferenceSigma = 0.01;
+  EXPECT_FALSE(evidence.add(two));
+  EXPECT_EQ(evidence.frames(), 1u);
+}
+
+TEST(LedIdEvidence, FramesThatSayNothingChangeNothing)
+{
+  vpLedIdEvidence evidence;
+  EXPECT_TRUE(evidence.add({}));
+  EXPECT_EQ(evidence.frames(), 0u);
+  evidence.add(stripes(1000, 1));
+  vpStripeFeatures whole;
+  whole.signal = Signal::coded; // a word not seen whole
+  EXPECT_TRUE(evidence.add(whole));
+  EXPECT_TRUE(evidence.add({}));
+  EXPECT_TRUE(evidence.add(stripes(300, 400)));
+  EXPECT_EQ(evidence.frames(), 1u);
+  EXPECT_EQ(evidence.features().frequency, 1000);
+}
+
+TEST(LedIdEvidence, FramesThatAgreeOnAWordMakeItSurer)
+{
+  vpStripeFeatures word;
+  word.signal = Signal::coded;
+  word.chips = "11010100";
+  word.chipsConfidence = 0.9;
+  word.frequency = 1000;
+  word.frequencySigma = 1;
+  vpLedIdEvidence evidence;
+  evidence.add(word);
+  evidence.add(word);
+  EXPECT_NEAR(evidence.features().chipsConfidence, 0.99, 1e-12);
+  word.chips = "11010000";
+  EXPECT_FALSE(evidence.add(word));
+  EXPECT_EQ(evidence.features().chips, "11010000");
+}
+
+} // namespace
