@@ -1,0 +1,73 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpSimulatedStripes_h
+#define vpSimulatedStripes_h
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include <visp3/vlp_detection/vpStripeAnalyzer.h>
+#include <visp3/vlp_simulation/vpLampLight.h>
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+//! The lines of one lamp as a sensor would give them: what the statistics of stripes are made of.
+struct vpSimulatedStripes {
+  int lines = 146;          // of the lamp in the picture
+  double step = 1;          // sensor lines from one line of the picture to the next, on average
+  double rowTime = 43.1e-6; // s, as the rig states it
+  double rowTimeError = 0;  // of the true one, as a share of it
+  double exposure = 43e-6;  // s
+  double amplitude = 75;    // grey levels, half the swing of the stripes where no exposure blurs them
+  double snr = 20;          // dB, amplitude over the noise of one line
+  double oscillator = 50;   // ppm, standard deviation
+
+  double noise() const { return amplitude * std::pow(10, -snr / 20); }
+
+  //! \param rim Light of the emitter's first and last line, as a share of its middle's.
+  vpStripeProfile profile(const vpModulation &modulation, std::mt19937_64 &generator, double rim = 1) const
+  {
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const vpLampLight light(modulation, 1 + 1e-6 * oscillator * normal(generator), uniform(generator));
+    const double first = std::floor(1000 * uniform(generator)); // of the sensor's lines
+    vpStripeProfile profile;
+    profile.exposure = exposure;
+    for (int i = 0; i < lines; ++i) {
+      const double line = std::floor((first + i) * step), start = line * rowTime * (1 + rowTimeError);
+      const double y = 2 * (i + 0.5) / lines - 1, emitted = rim + (1 - rim) * std::sqrt(1 - y * y);
+      profile.time.push_back(line * rowTime + exposure / 2);
+      profile.light.push_back(2 * amplitude * emitted * light.over(start, start + exposure).share +
+                              noise() * normal(generator));
+      profile.sigma.push_back(noise());
+    }
+    return profile;
+  }
+};
+
+//! Does \e count trials on all cores, each with a generator that its number seeds.
+inline void vpRunTrials(int count, const std::function<void(int trial, std::mt19937_64 &generator)> &trial)
+{
+  const int workers = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<std::thread> threads;
+  for (int worker = 0; worker < workers; ++worker) {
+    threads.emplace_back([=, &trial] {
+      for (int i = worker; i < count; i += workers) {
+        std::mt19937_64 generator(1000003u * static_cast<unsigned>(i) + 17u);
+        trial(i, generator);
+      }
+    });
+  }
+  for (std::thread &thread : threads) {
+    thread.join();
+  }
+}
+
+#endif
