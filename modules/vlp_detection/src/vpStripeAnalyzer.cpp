@@ -9,7 +9,6 @@
 #include <limits>
 #include <optional>
 
-#include "vpOutlineModel.h"
 #include "vpStripeStarts.h"
 #include "vpWaveformFit.h"
 
@@ -17,35 +16,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-
-//! Stretch of line \e v inside the outline, shrunk towards its middle by \e share.
-bool chordOf(const vpLampOutline &outline, double v, double share, double &first, double &last)
-{
-  if (outline.shape == vpLampOutline::Shape::ellipse) {
-    if (!vpEllipseModel(outline.centre, outline.a, outline.b, outline.angle).stretch(v, 0, first, last)) {
-      return false;
-    }
-  } else {
-    first = 1e9;
-    last = -1e9;
-    for (size_t i = 0; i < 4; ++i) {
-      const Eigen::Vector2d &p = outline.corners[i];
-      const Eigen::Vector2d &q = outline.corners[(i + 1) % 4];
-      if ((p.y() - v) * (q.y() - v) <= 0 && p.y() != q.y()) {
-        const double u = p.x() + (q.x() - p.x()) * (v - p.y()) / (q.y() - p.y());
-        first = std::min(first, u);
-        last = std::max(last, u);
-      }
-    }
-    if (first > last) {
-      return false;
-    }
-  }
-  const double cut = 0.5 * (1 - share) * (last - first);
-  first += cut;
-  last -= cut;
-  return true;
-}
 
 //! The best of several starts.
 void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
@@ -110,7 +80,7 @@ std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
       for (double k : {0.15, 0.25, 0.35, 0.45}) {
         for (double start : {0.0, 0.25, 0.5, 0.75}) {
           vpWaveformFit fit(profile, settings, envelope);
-          if (fit.run(f, start, 0.3, k)) {
+          if (fit.run(f, start, 0.3, k) && fit.preferStatedExposure()) {
             keepBetter(best, std::move(fit));
           }
         }
@@ -137,45 +107,6 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
 
 } // namespace
 
-vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
-                                       const vpOutlineFit &fit, const vpLedRoi &roi)
-{
-  const vpLampOutline &outline = fit.outline;
-  const bool soft = outline.shape == vpLampOutline::Shape::region || fit.blur > 0.1 * outline.diameter() / 2;
-  const double share = soft ? 0.35 : 0.8;
-  const double margin = soft ? 0 : 2 * fit.blur;
-  const Eigen::Vector4d box = outline.box();
-  vpStripeProfile profile;
-  profile.exposure = std::hypot(timing.exposure(), timing.averaging());
-  const bool sidesHidden = outline.shape != vpLampOutline::Shape::ellipse; // those along the lines
-  const double top = sidesHidden ? std::max<double>(roi.box.y, box(1)) : std::max(0.0, box(1));
-  const double bottom =
-      sidesHidden ? std::min<double>(roi.box.br().y - 1, box(3)) : std::min(lines.rows - 1.0, box(3));
-  const int from = static_cast<int>(std::ceil(top + margin));
-  const int to = static_cast<int>(std::floor(bottom - margin));
-  const double noise = std::max(fit.noise, 0.3);
-  for (int line = from; line <= to; ++line) {
-    double first, last;
-    if (!chordOf(outline, line, share, first, last)) {
-      continue;
-    }
-    const int left = std::max(0, static_cast<int>(std::ceil(first)));
-    const int right = std::min(lines.cols - 1, static_cast<int>(std::floor(last)));
-    if (right - left < 2) {
-      continue;
-    }
-    double sum = 0;
-    for (int x = left; x <= right; ++x) {
-      sum += lines(line, x);
-    }
-    const int count = right - left + 1;
-    profile.time.push_back(timing.middle(static_cast<unsigned int>(line)));
-    profile.light.push_back(sum / count - fit.background);
-    profile.sigma.push_back(noise / std::sqrt(count));
-  }
-  return profile;
-}
-
 vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
 {
   vpStripeFeatures features;
@@ -201,7 +132,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   settings.modelError = modelError;
   settings.exposureTolerance = exposureTolerance;
   settings.envelopeOrder =
-      std::clamp(static_cast<int>(peaks.size()) - 1, 0, brightest > evenEmitter * dimmest ? 4 : 2);
+      std::clamp(static_cast<int>(peaks.size()) - 1, peaks.size() > 1 ? 2 : 0, brightest > evenEmitter * dimmest ? 4 : 2);
   const std::vector<double> envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
   std::vector<vpStripeStarts::Sinusoid> candidates =
       vpStripeStarts::periodogram(profile, envelope, modelError);

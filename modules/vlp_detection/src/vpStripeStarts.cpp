@@ -54,6 +54,10 @@ std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
   if (rising && (peaks.empty() || p[high] > 0.3 * p[peaks.back()])) {
     peaks.push_back(high);
   }
+  // So it does in the gap that the profile begins with.
+  while (peaks.size() > 1 && p[peaks[0]] < std::max(ofTheLast * p[peaks[1]], ofAll * brightest)) {
+    peaks.erase(peaks.begin());
+  }
   return peaks;
 }
 

@@ -309,29 +309,40 @@ void vpWaveformFit::descend(int iterations)
   m_cost = cost(m_x, true);
 }
 
-bool vpWaveformFit::preferStatedExposure(int attempts)
+//! How far an exposure (s) and a pulse (periods) are from what they should be: a chi-square.
+double vpWaveformFit::unlikely(double exposed, double pulse) const
 {
-  if (m_settings.twoPulse) {
-    return true;
-  }
-  const double pulse = m_x(duty) / m_x(frequency); // s
+  static const double misstated = 0.15; // of the exposure's logarithm, standard deviation
+  static const double usual = 0.3;      // of the duty
+  return std::pow(std::log(exposed / m_profile->exposure) / misstated, 2) +
+         std::pow((pulse * pulses() - 0.5) / usual, 2);
+}
+
+//! What pulse and exposure would be were each taken for the other.
+std::optional<vpWaveformFit::Vector> vpWaveformFit::exchanged() const
+{
+  const double pulse = m_x(duty) / pulses(), exposed = m_x(exposure) * m_x(frequency); // periods
   static const double wholePeriod = 0.98;
-  double exposed = m_x(exposure) * m_x(frequency); // periods
-  auto unlikely = [this](double time, double share) {
-    static const double misstated = 0.5; // of the exposure's logarithm, standard deviation
-    static const double usual = 0.2;     // of the duty
-    return std::hypot(std::log(time / m_profile->exposure) / misstated, (share - 0.5) / usual);
-  };
-  if (unlikely(m_x(exposure), m_x(duty)) <= unlikely(pulse, std::min(exposed, wholePeriod)) ||
-      attempts == 0) {
+  if (exposed * pulses() > wholePeriod) {
+    return std::nullopt;
+  }
+  Vector other = m_x;
+  other(phase) += 0.5 * (exposed - pulse); // the pulse's middle stays
+  other(duty) = exposed * pulses();
+  other(exposure) = pulse / m_x(frequency);
+  return other;
+}
+
+bool vpWaveformFit::preferStatedExposure()
+{
+  const std::optional<Vector> other = exchanged();
+  if (!other || unlikely(m_x(exposure), m_x(duty) / pulses()) <=
+                    unlikely((*other)(exposure), (*other)(duty) / pulses())) {
     return true;
   }
-  if (exposed > wholePeriod) {
-    exposed = 0.5; // no pulse, only a start for one
-  }
-  // The pulse's middle stays. The fit from there may find its way back.
-  return run(m_x(frequency), m_x(phase) + 0.5 * (exposed - m_x(duty)), exposed, 0, pulse, true) &&
-         preferStatedExposure(attempts - 1);
+  // The fit from there may find its way back.
+  return run((*other)(frequency), (*other)(phase), (*other)(duty), (*other)(phaseDifference),
+             (*other)(exposure), true);
 }
 
 int vpWaveformFit::degreesOfFreedom() const

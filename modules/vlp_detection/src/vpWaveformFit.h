@@ -6,6 +6,7 @@
 #define vpWaveformFit_h
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -54,7 +55,7 @@ public:
     Pulse and exposure are both boxes, and which is which the profile does not say: swaps them where that
     brings exposure and duty together nearer to the stated exposure and to the duties that lamps have.
   */
-  bool preferStatedExposure(int attempts = 2);
+  bool preferStatedExposure();
 
   //! Turns values and standard deviations into those of the posterior about the minimum that run() found.
   void integrate();
@@ -88,6 +89,9 @@ private:
   {
     return parameter == phaseDifference ? m_settings.twoPulse : parameter != exposure || m_freeExposure;
   }
+  double pulses() const { return m_settings.twoPulse ? 2 : 1; } // of a period
+  double unlikely(double exposed, double pulse) const;
+  std::optional<Vector> exchanged() const;
   void keepPossible(Vector &x) const;
   double prior(int parameter, double &mean) const;
   int degreesOfFreedom() const;

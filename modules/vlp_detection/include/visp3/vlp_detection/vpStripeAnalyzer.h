@@ -17,15 +17,17 @@ BEGIN_VISP_NAMESPACE
 //! The light of one lamp, line by line.
 struct VISP_EXPORT vpStripeProfile {
   std::vector<double> time;  // s, middle of each line's exposure, after the start of the frame
-  std::vector<double> light; // grey levels above the lamp's surroundings, mean over the line
+  std::vector<double> light; // grey levels above the lamp's surroundings
   std::vector<double> sigma; // grey levels, of light by pixel noise
   double exposure = 0;       // s, of each line, averaging by a resize included
 
   /*!
-    Profile inside an outline (in samples and lines, as the fitter gives it). A quadrilateral's sides along
-    the lines are hardly seen: its lines beyond the first and last lit one of \e roi may be dark stripes or no
-    lamp at all, and stay out. Of a lamp with a soft edge only the middle strip counts, where its glow is
-    even.
+    Profile inside an outline (in samples and lines, as the fitter gives it). Of an ellipse, each line's light
+    is told as that of the lamp's middle: how the emitter dims towards its rim is seen along each lit line,
+    where no stripe can be confused with it, and white pixels, which hide how bright they are, stay out where
+    a line has others. A quadrilateral's sides along the lines are hardly seen: its lines beyond the first and
+    last lit one of \e roi may be dark stripes or no lamp at all, and stay out. Of a lamp with a soft edge
+    only the middle strip counts, where its glow is even.
   */
   static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                const vpOutlineFit &fit, const vpLedRoi &roi);

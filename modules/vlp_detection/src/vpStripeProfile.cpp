@@ -1,0 +1,209 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_detection/vpStripeAnalyzer.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "vpOutlineModel.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+
+const int white = 250; // grey value from which a pixel may have had more light than it shows
+
+//! Stretch of line \e v inside the outline, shrunk towards its middle by \e share.
+bool chordOf(const vpLampOutline &outline, double v, double share, double &first, double &last)
+{
+  if (outline.shape == vpLampOutline::Shape::ellipse) {
+    if (!vpEllipseModel(outline.centre, outline.a, outline.b, outline.angle).stretch(v, 0, first, last)) {
+      return false;
+    }
+  } else {
+    first = 1e9;
+    last = -1e9;
+    for (size_t i = 0; i < 4; ++i) {
+      const Eigen::Vector2d &p = outline.corners[i];
+      const Eigen::Vector2d &q = outline.corners[(i + 1) % 4];
+      if ((p.y() - v) * (q.y() - v) <= 0 && p.y() != q.y()) {
+        const double u = p.x() + (q.x() - p.x()) * (v - p.y()) / (q.y() - p.y());
+        first = std::min(first, u);
+        last = std::max(last, u);
+      }
+    }
+    if (first > last) {
+      return false;
+    }
+  }
+  const double cut = 0.5 * (1 - share) * (last - first);
+  first += cut;
+  last -= cut;
+  return true;
+}
+
+//! Samples of one line, inside the lamp.
+struct Chord {
+  int line, first, last;
+};
+
+/*!
+  How an emitter dims from its middle to its rim, as exp(a r^2 + b r^4), r being 0 at its middle and 1 at its
+  outline. All samples of a line are exposed together, so each lit line shows it whatever the stripes are:
+  least squares of the logarithms, each line with a brightness of its own.
+*/
+class Falloff
+{
+public:
+  Falloff() = default;
+  Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, const vpOutlineFit &fit);
+
+  //! Light at a sample, as a share of that at the lamp's middle.
+  double at(int sample, int line) const
+  {
+    if (!m_uneven) {
+      return 1;
+    }
+    const double r2 = squaredRadius(sample, line);
+    return std::exp((m_a + m_b * r2) * r2);
+  }
+
+private:
+  double squaredRadius(int sample, int line) const
+  {
+    return (m_toDisc * (Eigen::Vector2d(sample, line) - m_centre)).squaredNorm();
+  }
+
+  bool m_uneven = false;
+  double m_a = 0, m_b = 0;
+  Eigen::Vector2d m_centre = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d m_toDisc = Eigen::Matrix2d::Identity(); // from the outline to the unit circle
+};
+
+Falloff::Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords,
+                 const vpOutlineFit &fit)
+    : m_centre(fit.outline.centre)
+{
+  const vpLampOutline &outline = fit.outline;
+  const double c = std::cos(outline.angle), s = std::sin(outline.angle);
+  m_toDisc << c / outline.a, s / outline.a, -s / outline.b, c / outline.b;
+  static const double roughness = 0.02; // share of the light by which an emitter is not smooth, sigma
+  static const double usual = 1;        // of a and b, standard deviation
+  static const int enough = 64;         // samples of a line
+  const double noise = std::max(fit.noise, 0.3), least = std::max(8 * noise, 6.0);
+  Eigen::Matrix2d H = Eigen::Matrix2d::Identity() / (usual * usual);
+  Eigen::Vector2d g = Eigen::Vector2d::Zero();
+  for (const Chord &chord : chords) {
+    const int step = std::max(1, (chord.last - chord.first) / enough);
+    double weights = 0, meanLog = 0, logs = 0;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero(), byLog = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+    for (int x = chord.first; x <= chord.last; x += step) {
+      const double light = lines(chord.line, x) - fit.background;
+      if (light < least || lines(chord.line, x) >= white) {
+        continue;
+      }
+      const double weight = 1 / (noise * noise / (light * light) + roughness * roughness);
+      const double r2 = squaredRadius(x, chord.line), log = std::log(light);
+      const Eigen::Vector2d powers(r2, r2 * r2);
+      weights += weight;
+      logs += weight * log;
+      mean += weight * powers;
+      byLog += weight * log * powers;
+      squares += weight * powers * powers.transpose();
+    }
+    if (weights > 0) {
+      meanLog = logs / weights;
+      mean /= weights;
+      H += squares - weights * mean * mean.transpose();
+      g += byLog - weights * meanLog * mean;
+    }
+  }
+  const Eigen::Vector2d solution = H.inverse() * g;
+  static const double most = 4; // of the logarithm at the rim: what goes farther is no lamp's falloff
+  m_uneven = solution.allFinite() && std::abs(solution.sum()) < most && solution.norm() < 3 * most;
+  m_a = solution.x();
+  m_b = solution.y();
+}
+
+//! Least squares of a line's brightness at the lamp's middle, from what is not white, or else from all.
+void addLine(vpStripeProfile &profile, const cv::Mat_<unsigned char> &lines, const Chord &chord,
+             const Falloff &falloff, const vpOutlineFit &fit)
+{
+  double light = 0, squares = 0, clippedLight = 0, clippedSquares = 0;
+  int unclipped = 0;
+  for (int x = chord.first; x <= chord.last; ++x) {
+    const double dimmed = falloff.at(x, chord.line), seen = lines(chord.line, x) - fit.background;
+    unclipped += lines(chord.line, x) < white;
+    (lines(chord.line, x) < white ? light : clippedLight) += dimmed * seen;
+    (lines(chord.line, x) < white ? squares : clippedSquares) += dimmed * dimmed;
+  }
+  static const int enough = 4; // samples
+  if (unclipped < enough) {
+    light += clippedLight;
+    squares += clippedSquares;
+  }
+  profile.light.push_back(light / squares);
+  profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(squares));
+}
+
+//! Whether most of some line is white.
+bool hasWhiteLines(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
+{
+  return std::any_of(chords.begin(), chords.end(), [&lines](const Chord &chord) {
+    const unsigned char *row = lines[chord.line];
+    return 2 * std::count_if(row + chord.first, row + chord.last + 1,
+                             [](unsigned char grey) { return grey >= white; }) >
+           chord.last - chord.first;
+  });
+}
+
+} // namespace
+
+vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
+                                       const vpOutlineFit &fit, const vpLedRoi &roi)
+{
+  const vpLampOutline &outline = fit.outline;
+  const bool ellipse = outline.shape == vpLampOutline::Shape::ellipse; // else its sides along the lines hide
+  const bool soft = outline.shape == vpLampOutline::Shape::region || fit.blur > 0.1 * outline.diameter() / 2;
+  const double margin = soft ? 0 : 2 * fit.blur;
+  const Eigen::Vector4d box = outline.box();
+  const double top = ellipse ? std::max(0.0, box(1)) : std::max<double>(roi.box.y, box(1));
+  const double bottom =
+      ellipse ? std::min(lines.rows - 1.0, box(3)) : std::min<double>(roi.box.br().y - 1, box(3));
+  auto chordsOf = [&](double share) {
+    std::vector<Chord> chords;
+    for (int line = static_cast<int>(std::ceil(top + margin)); line <= bottom - margin; ++line) {
+      double first, last;
+      if (!chordOf(outline, line, share, first, last)) {
+        continue;
+      }
+      const int left = std::max(0, static_cast<int>(std::ceil(first)));
+      const int right = std::min(lines.cols - 1, static_cast<int>(std::floor(last)));
+      if (right - left >= 2) {
+        chords.push_back({line, left, right});
+      }
+    }
+    return chords;
+  };
+  static const double inside = 0.8, middle = 0.35; // of a chord
+  std::vector<Chord> chords = chordsOf(soft ? middle : inside);
+  if (ellipse && !soft && hasWhiteLines(lines, chords)) {
+    chords = chordsOf(std::max(inside, 1 - (margin + 1) / outline.b)); // the rim may be dimmer than white
+  }
+  const Falloff falloff = ellipse && !soft ? Falloff(lines, chords, fit) : Falloff();
+  vpStripeProfile profile;
+  profile.exposure = std::hypot(timing.exposure(), timing.averaging());
+  for (const Chord &chord : chords) {
+    profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
+    addLine(profile, lines, chord, falloff, fit);
+  }
+  return profile;
+}
+
+END_VISP_NAMESPACE
