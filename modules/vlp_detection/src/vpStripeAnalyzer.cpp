@@ -17,6 +17,8 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
+const double allExplained = 0.01; // misfit: no other start will do better
+
 //! The best of several starts.
 void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 {
@@ -33,7 +35,6 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile,
 {
   std::optional<vpWaveformFit> best;
   if (pulses) {
-    static const double allExplained = 0.01; // misfit: no other start will do better
     vpWaveformFit fit(profile, settings, envelope);
     if (fit.run(pulses->frequency, pulses->phase, pulses->duty, 0, 0, true) && fit.preferStatedExposure()) {
       if (fit.misfit() < allExplained) {
@@ -65,11 +66,22 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile,
 
 std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
                                          const std::vector<vpStripeStarts::Sinusoid> &candidates,
+                                         const std::optional<vpStripeStarts::Pulses> &pulses,
                                          vpWaveformFit::Settings settings,
                                          const std::vector<double> &envelope)
 {
   settings.twoPulse = true;
   std::optional<vpWaveformFit> best;
+  if (pulses) {
+    vpWaveformFit fit(profile, settings, envelope);
+    if (fit.run(pulses->frequency, pulses->phase, pulses->duty, pulses->phaseDifference, 0, true) &&
+        fit.preferStatedExposure()) {
+      if (fit.misfit() < allExplained) {
+        return fit;
+      }
+      keepBetter(best, std::move(fit));
+    }
+  }
   const double span = profile.time.back() - profile.time.front();
   for (const vpStripeStarts::Sinusoid &candidate : candidates) {
     for (int multiple = 1; multiple <= 2; ++multiple) { // the second harmonic may be the stronger
@@ -131,8 +143,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   vpWaveformFit::Settings settings;
   settings.modelError = modelError;
   settings.exposureTolerance = exposureTolerance;
-  settings.envelopeOrder =
-      std::clamp(static_cast<int>(peaks.size()) - 1, peaks.size() > 1 ? 2 : 0, brightest > evenEmitter * dimmest ? 4 : 2);
+  settings.envelopeOrder = std::clamp(static_cast<int>(peaks.size()) - 1, peaks.size() > 1 ? 2 : 0,
+                                      brightest > evenEmitter * dimmest ? 4 : 2);
   const std::vector<double> envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
   std::vector<vpStripeStarts::Sinusoid> candidates =
       vpStripeStarts::periodogram(profile, envelope, modelError);
@@ -142,16 +154,20 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   candidates.resize(std::min<size_t>(candidates.size(), 3));
 
-  const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::edges(profile, envelope);
+  const std::vector<vpStripeStarts::Edge> edges = vpStripeStarts::edges(profile, envelope);
+  const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::pulses(edges);
   std::optional<vpWaveformFit> pwm = fitPwm(profile, candidates, pulses, settings, envelope);
   if (pwm) {
     pwm->integrate();
     take(features, *pwm, false);
   }
-  static const double wellExplained = 0.05;
+  // A second pulse explains a little of what blur and tone curve do to one, too.
+  static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;
   if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
-    std::optional<vpWaveformFit> two = fitTwoPulse(profile, candidates, settings, envelope);
-    if (two && two->misfit() < maxMisfit && (!pwm || two->misfit() < 0.5 * pwm->misfit())) {
+    std::optional<vpWaveformFit> two =
+        fitTwoPulse(profile, candidates, vpStripeStarts::pairsOfPulses(edges), settings, envelope);
+    if (two && two->misfit() < maxMisfit &&
+        (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
       two->integrate();
       take(features, *two, true);
     }

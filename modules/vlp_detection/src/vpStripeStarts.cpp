@@ -14,6 +14,13 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+//! Whether edges lie within some share of a period from where they should be.
+bool agree(const Eigen::VectorXd &residuals, double period)
+{
+  static const double most = 0.15; // periods, root mean square
+  return residuals.norm() < most * period * std::sqrt(static_cast<double>(residuals.size()));
+}
+
 double scaledLine(const vpStripeProfile &profile, size_t i)
 {
   const double first = profile.time.front(), last = profile.time.back();
@@ -84,7 +91,18 @@ std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, con
   for (int k = 1; k <= fitted; ++k) {
     A(n + k - 1, k) = 0.1; // as flat as the peaks allow
   }
-  const Eigen::VectorXd coefficients = A.colPivHouseholderQr().solve(b);
+  Eigen::VectorXd coefficients = A.colPivHouseholderQr().solve(b);
+  // A pulse that the lamp's border or a line's exposure cuts short peaks below the envelope: such ones let
+  // go.
+  static const double below = 0.1; // of a logarithm
+  for (int round = 0; round < 4; ++round) {
+    Eigen::VectorXd weights = Eigen::VectorXd::Ones(A.rows());
+    const Eigen::VectorXd residuals = b - A * coefficients;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      weights(i) = residuals(i) < -below ? below / -residuals(i) : 1;
+    }
+    coefficients = (weights.asDiagonal() * A).colPivHouseholderQr().solve(weights.cwiseProduct(b));
+  }
   std::vector<double> envelope;
   for (size_t line = 0; line < profile.light.size(); ++line) {
     double log = 0;
@@ -110,7 +128,8 @@ std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripe
     y(i) = 2 * t(i) / span;
     const double scale = envelope[static_cast<size_t>(i)];
     q(i) = profile.light[i] / scale;
-    w(i) = 1 / std::hypot(profile.sigma[i] / scale, modelError * std::min(1.0, q(i)));
+    // Were dark lines as certain as their noise is low, no sinusoid would fit stripes of a short pulse.
+    w(i) = 1 / std::hypot(profile.sigma[i] / scale, modelError * std::clamp(q(i), 0.3, 1.0));
   }
   Eigen::MatrixXd A(n, 4);
   A.col(0) = w;
@@ -148,13 +167,9 @@ std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripe
   return maxima;
 }
 
-std::optional<vpStripeStarts::Pulses> vpStripeStarts::edges(const vpStripeProfile &profile,
-                                                            const std::vector<double> &envelope)
+std::vector<vpStripeStarts::Edge> vpStripeStarts::edges(const vpStripeProfile &profile,
+                                                        const std::vector<double> &envelope)
 {
-  struct Edge {
-    double time; // s, from the middle of the profile
-    bool rising;
-  };
   static const double half = 0.5; // of the envelope
   static const double off = 0.2;  // from there, before a crossing counts
   const size_t n = profile.light.size();
@@ -181,28 +196,59 @@ std::optional<vpStripeStarts::Pulses> vpStripeStarts::edges(const vpStripeProfil
       latestShare = now;
     }
   }
-  if (found.size() < 3) {
+  return found;
+}
+
+std::optional<vpStripeStarts::Pulses> vpStripeStarts::pulses(const std::vector<Edge> &edges)
+{
+  if (edges.size() < 3) {
     return std::nullopt;
   }
   // Unknown: start of the pulse with the first rise, period, length of a pulse.
-  Eigen::MatrixXd A(static_cast<Eigen::Index>(found.size()), 3);
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(edges.size()), 3);
   Eigen::VectorXd b(A.rows());
-  int pulse = found.front().rising ? -1 : 0;
+  int pulse = edges.front().rising ? -1 : 0;
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    pulse += found[static_cast<size_t>(i)].rising ? 1 : 0;
-    A.row(i) << 1, pulse, found[static_cast<size_t>(i)].rising ? 0 : 1;
-    b(i) = found[static_cast<size_t>(i)].time;
+    const Edge &edge = edges[static_cast<size_t>(i)];
+    pulse += edge.rising ? 1 : 0;
+    A.row(i) << 1, pulse, edge.rising ? 0 : 1;
+    b(i) = edge.time;
   }
   const Eigen::Vector3d x = A.colPivHouseholderQr().solve(b);
   const double period = x(1), length = x(2);
-  if (!(period > 0 && length > 0.01 * period && length < 0.99 * period)) {
+  if (!(period > 0 && length > 0.01 * period && length < 0.99 * period) || !agree(A * x - b, period)) {
     return std::nullopt;
   }
-  static const double agree = 0.15; // periods, root mean square
-  if ((A * x - b).norm() > agree * period * std::sqrt(static_cast<double>(found.size()))) {
+  return Pulses{1 / period, -x(0) / period, length / period, 0};
+}
+
+std::optional<vpStripeStarts::Pulses> vpStripeStarts::pairsOfPulses(const std::vector<Edge> &edges)
+{
+  if (edges.size() < 6) {
     return std::nullopt;
   }
-  return Pulses{1 / period, -x(0) / period, length / period};
+  // Unknown: start of a first pulse, period, length of a pulse, from a first pulse to its second. Which of
+  // two neighbours is the first one shows by the shorter way.
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(edges.size()), 4);
+  Eigen::VectorXd b(A.rows());
+  int pulse = edges.front().rising ? -1 : 0;
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    const Edge &edge = edges[static_cast<size_t>(i)];
+    pulse += edge.rising ? 1 : 0;
+    A.row(i) << 1, pulse / 2, edge.rising ? 0 : 1, pulse % 2;
+    b(i) = edge.time;
+  }
+  Eigen::Vector4d x = A.colPivHouseholderQr().solve(b);
+  const double period = x(1), length = x(2);
+  if (!(period > 0 && length > 0.01 * period && x(3) > length && period - x(3) > length) ||
+      !agree(A * x - b, period)) {
+    return std::nullopt;
+  }
+  if (x(3) > 0.5 * period) {
+    x(0) += x(3);
+    x(3) = period - x(3);
+  }
+  return Pulses{1 / period, -x(0) / period, 2 * length / period, x(3) / period};
 }
 
 END_VISP_NAMESPACE

@@ -42,18 +42,27 @@ struct Sinusoid {
 std::vector<Sinusoid> periodogram(const vpStripeProfile &profile, const std::vector<double> &envelope,
                                   double modelError);
 
-struct Pulses {
-  double frequency; // Hz
-  double phase;     // periods, at the middle of the profile: a pulse begins where it is whole
-  double duty;
+struct Edge {
+  double time; // s, from the middle of the profile
+  bool rising;
 };
 
-/*!
-  Pulses by the times at which the profile crosses half its envelope, where the stripes are wide enough to
-  show them: least squares of rises at t0 + k T and falls at t0 + (k + duty) T. Nothing where three edges or
-  more do not agree on that.
-*/
-std::optional<Pulses> edges(const vpStripeProfile &profile, const std::vector<double> &envelope);
+//! Times at which the profile crosses half its envelope, where the stripes are wide enough to show them.
+std::vector<Edge> edges(const vpStripeProfile &profile, const std::vector<double> &envelope);
+
+struct Pulses {
+  double frequency;       // Hz
+  double phase;           // periods, at the middle of the profile: a first pulse begins where it is whole
+  double duty;            // lit share of the period
+  double phaseDifference; // periods, of two pulses
+};
+
+//! One pulse a period: least squares of rises at t0 + m T and falls at t0 + (m + duty) T. Nothing where three
+//! edges or more do not agree on that.
+std::optional<Pulses> pulses(const std::vector<Edge> &edges);
+
+//! The same of two pulses a period; nothing of less than six edges.
+std::optional<Pulses> pairsOfPulses(const std::vector<Edge> &edges);
 
 } // namespace vpStripeStarts
 

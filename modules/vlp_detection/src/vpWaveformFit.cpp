@@ -63,6 +63,10 @@ vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &set
   }
   m_wave.resize(n);
   m_derivative.resize(n);
+  // A dark lamp is about as dark as its surroundings, which the profile has no more.
+  static const double glow = 0.05; // share of the lit lamp's light, standard deviation
+  const double dark = std::max(1.0, glow * *std::max_element(m_given.begin(), m_given.end()));
+  m_darkness = 1 / (dark * dark);
 }
 
 double vpWaveformFit::waveform(const Vector &x, double t, Vector &derivative) const
@@ -150,6 +154,7 @@ double vpWaveformFit::cost(const Vector &x, bool derivatives)
     squares += w * light * light;
   }
   A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
+  A(0, 0) += m_darkness;
   for (int k = 2; k < m_linear; ++k) {
     A(k, k) += 0.06; // bends of four times the envelope are one standard deviation
   }
@@ -205,6 +210,7 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g) const
     N.noalias() += m_weight[i] * J * J.transpose();
     r += m_weight[i] * residual * J;
   }
+  N(parameters, parameters) += m_darkness;
   N.diagonal().tail<mostLinear>().array() += 1e-9 * N(parameters, parameters) + 1e-12;
   const Eigen::Matrix<double, mostLinear, mostLinear> L = N.bottomRightCorner<mostLinear, mostLinear>();
   const Eigen::Matrix<double, mostLinear, parameters> C = N.bottomLeftCorner<mostLinear, parameters>();

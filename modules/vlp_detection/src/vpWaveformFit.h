@@ -104,6 +104,7 @@ private:
   double m_line = 0;           // s, mean distance of the lines
   double m_startFrequency = 0; // Hz
   bool m_freeExposure = true;
+  double m_darkness = 0;        // 1 / variance of the offset about 0
   std::vector<double> m_weight; // 1 / variance of each line
   std::vector<double> m_given;  // envelope, grey levels
   Vector m_x = Vector::Zero();

@@ -86,7 +86,7 @@ void vpWaveformFit::integrate()
     // Pulse and exposure may be each other. With odds of 1 : q the duty is spread by sqrt(q) / (1 + q).
     const double q = std::exp(-0.5 * std::abs(unlikely((*other)(exposure), (*other)(duty) / pulses()) -
                                               unlikely(m_x(exposure), m_x(duty) / pulses())));
-    const double spread = std::sqrt(q) / (1 + q) * ((*other)(duty) - m_x(duty));
+    const double spread = std::sqrt(q) / (1 + q) * ((*other)(duty)-m_x(duty));
     doubt(duty) = std::hypot(doubt(duty), spread);
   }
   m_sigma = (posterior.covariance.diagonal().cwiseMax(0) + doubt.cwiseAbs2()).cwiseSqrt();
