@@ -78,6 +78,7 @@ struct vpLedIdRecognizer::Candidate {
   double frequency; // Hz
   double sigma;     // Hz, of the frequency seen about it, row time exact
   double weight;    // prior probability, times the density of all features but the frequency
+  bool fits;        // in all features but the frequency
   double probability = 0;
 };
 
@@ -119,20 +120,20 @@ void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const st
   for (Candidate &candidate : candidates) {
     const double expected = candidate.frequency * (1 + mean);
     const double sigma = std::hypot(candidate.sigma, candidate.frequency * std::sqrt(variance));
+    candidate.fits = candidate.fits && std::abs(frequency - expected) < gate * sigma;
     candidate.probability = 0;
-    if (std::abs(frequency - expected) < gate * sigma) {
-      for (size_t k = 0; k < errors.size(); ++k) {
-        candidate.probability += weights[k] * candidate.weight * density(candidate, errors[k]);
-      }
+    for (size_t k = 0; k < errors.size(); ++k) {
+      candidate.probability += weights[k] * candidate.weight * density(candidate, errors[k]);
     }
-    sum += candidate.probability;
+    sum += candidate.probability; // of what does not fit, too: it may be less unlikely than the rest
   }
   for (Candidate &candidate : candidates) {
     candidate.probability /= sum;
   }
-  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                  [](const Candidate &c) { return !(c.probability > leastProbability); }),
-                   candidates.end());
+  candidates.erase(
+      std::remove_if(candidates.begin(), candidates.end(),
+                     [](const Candidate &c) { return !c.fits || !(c.probability > leastProbability); }),
+      candidates.end());
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate &a, const Candidate &b) { return a.probability > b.probability; });
 }
@@ -150,7 +151,7 @@ vpLedIdRecognizer::vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutte
   });
 }
 
-//! Where duty, phase difference or word of the identifier fit what was seen.
+//! Compares duty, phase difference or word of an identifier with what was seen.
 void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp, size_t index) const
 {
   const vpStripeFeatures &seen = lamp.features;
@@ -165,19 +166,19 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   candidate.sigma = std::hypot(seen.frequencySigma, 1e-6 * identifier.oscillatorPpm * candidate.frequency);
   candidate.weight = (1 - unknownPrior) * static_cast<double>(identifier.lamps.size()) /
                      static_cast<double>(m_map.lamps.size());
-  auto fits = [&](double difference, double sigma) {
+  candidate.fits = true;
+  auto compare = [&](double difference, double sigma) {
     candidate.weight *= normalDensity(difference / sigma, sigma);
-    return std::abs(difference) < gate * sigma;
+    candidate.fits = candidate.fits && std::abs(difference) < gate * sigma;
   };
   // Saturation widens the lit stripes.
   static const double bySaturation = 0.15;
-  if (sent.duty && !fits(seen.duty - *sent.duty, std::sqrt(square(seen.dutySigma) + square(dutyError) +
-                                                           square(bySaturation * lamp.saturated)))) {
-    return;
+  if (sent.duty) {
+    compare(seen.duty - *sent.duty,
+            std::sqrt(square(seen.dutySigma) + square(dutyError) + square(bySaturation * lamp.saturated)));
   }
-  if (sent.kind == vpModulation::Kind::twoPulse &&
-      !fits(seen.phaseDifference - sent.phaseDifference, std::hypot(seen.phaseDifferenceSigma, phaseError))) {
-    return;
+  if (sent.kind == vpModulation::Kind::twoPulse) {
+    compare(seen.phaseDifference - sent.phaseDifference, std::hypot(seen.phaseDifferenceSigma, phaseError));
   }
   if (sent.kind == vpModulation::Kind::word) {
     if (!sameWord(seen.chips, sent.chips())) {
@@ -198,7 +199,7 @@ vpLedIdRecognizer::Sight vpLedIdRecognizer::sightOf(const vpLampObservation &lam
   sight.readable = true;
   sight.frequency = seen.frequency;
   sight.unknown = unknownPrior * unknownDensity(seen);
-  // All that the gate may let pass; an oscillator of the map may be as wide as the range of frequencies.
+  // All that may compete; an oscillator of the map may be as wide as the range of frequencies.
   for (size_t index : m_byFrequency) {
     const vpIdentifier &identifier = m_identifiers[index];
     const double f = identifier.modulation.repetitionFrequency();

@@ -182,6 +182,14 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   if (periods < leastPeriods || (periods < manyPeriods && !pulses) || profile.time.size() < leastLines) {
     features.frequencySigma = std::max(features.frequencySigma, features.frequency);
   }
+  // An exposure of a period or more leaves a remainder of the stripes that other exposures, duties and offsets
+  // would leave as well.
+  static const double longExposure = 0.9; // periods
+  if (profile.exposure * features.frequency > longExposure) {
+    static const double anyDuty = 0.3, cycles = 0.1; // standard deviations, of cycles over the profile
+    features.dutySigma = std::max(features.dutySigma, anyDuty);
+    features.frequencySigma = std::max(features.frequencySigma, cycles / span);
+  }
   if (!(features.misfit < maxMisfit)) {
     features.signal = vpStripeFeatures::Signal::coded;
     const double none = std::numeric_limits<double>::quiet_NaN(); // what was fitted is not what it sends

@@ -40,7 +40,7 @@ class VISP_EXPORT vpLedIdRecognizer
 {
 public:
   double gate = 3;                // standard deviations, on each feature
-  double minConfidence = 0.95;    // probability below which no id is given
+  double minConfidence = 0.99;    // probability below which no id is given
   double maxFrequencyDoubt = 0.1; // share of the frequency: less certain stripes are recognised as nothing
   double dutyError = 0.03;        // systematic error of a measured duty, standard deviation
   double phaseError = 0.01;       // of a measured phase difference, periods
