@@ -110,6 +110,8 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
   features.frequencySigma = fit.sigma(P::frequency);
   features.duty = fit.value(P::duty);
   features.dutySigma = fit.sigma(P::duty);
+  features.exposure = fit.value(P::exposure);
+  features.exposureSigma = fit.sigma(P::exposure);
   features.misfit = fit.misfit();
   if (twoPulse) {
     features.phaseDifference = fit.value(P::phaseDifference);

@@ -67,6 +67,8 @@ struct VISP_EXPORT vpStripeFeatures {
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
   double phaseDifference = std::numeric_limits<double>::quiet_NaN(); // periods, twoPulse only
   double phaseDifferenceSigma = std::numeric_limits<double>::quiet_NaN();
+  double exposure = std::numeric_limits<double>::quiet_NaN(); // s, as soft as the stripes' edges are
+  double exposureSigma = std::numeric_limits<double>::quiet_NaN();
   /*!
     Of a coded signal that was seen for one whole repetition or more: its chips, '1' lit, in the order of
     time, of all rotations the lexicographically greatest (where the word begins, the stripes do not say). One
