@@ -1,0 +1,188 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Few identifiers over many lamps: how often a picture alone says where the robot is, and how long that
+// takes; and how often geometry tells a reflection from its lamp. Prints two tables for BENCHMARK.md.
+
+#include <chrono>
+#include <iomanip>
+#include <iostream>
+#include <numeric>
+
+#include "vlp_localization/reuseScene.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+using reuseScene::Ceiling;
+using reuseScene::Errors;
+using reuseScene::View;
+using Outcome = vpLampMatch::Outcome;
+
+const size_t identifiers = 50;
+const int places = 1000;
+
+double milliseconds(const std::chrono::steady_clock::time_point &since)
+{
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
+}
+
+struct Times {
+  std::vector<double> all; // ms
+
+  double mean() const
+  {
+    return std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
+  }
+  double share95()
+  {
+    std::sort(all.begin(), all.end());
+    return all[all.size() * 95 / 100];
+  }
+};
+
+struct Score {
+  int right = 0, refused = 0, wrong = 0;
+  Times times;
+
+  void match(const vpLampMatcher &matcher, const View &view, const std::optional<vpPoseHint> &hint)
+  {
+    const std::vector<size_t> all = view.all();
+    const auto start = std::chrono::steady_clock::now();
+    const vpLampMatch match = matcher.match(view.observations, all, hint);
+    times.all.push_back(milliseconds(start));
+    const bool isWrong = reuseScene::wrong(match, view);
+    wrong += isWrong;
+    right += match.outcome == Outcome::unique && !isWrong;
+    refused += match.outcome != Outcome::unique;
+  }
+};
+
+vpIdentifierAssignment layOver(const std::vector<Eigen::Vector3d> &positions)
+{
+  vpIdentifierLayout layout;
+  layout.viewRadius = reuseScene::viewRadius;
+  return layout.lay(positions, identifiers);
+}
+
+//! The robot was near here, and has moved by up to 0.2 m and 0.2 rad since.
+vpPoseHint hintFor(Ceiling &ceiling, const vpHomogeneousMatrix &wMb)
+{
+  const double azimuth = ceiling.random().uniform(-M_PI, M_PI), moved = ceiling.random().uniform(0, 0.2);
+  vpPoseHint hint;
+  hint.wMb = lampScene::frame(moved * std::cos(azimuth), moved * std::sin(azimuth), 0, 0, 0, 0) * wMb *
+             lampScene::frame(0, 0, 0, 0, 0, ceiling.random().uniform(-0.2, 0.2));
+  hint.reach = hint.turn = 0.3;
+  return hint;
+}
+
+void coldStarts(const std::string &name, size_t lamps, double spacing, double jitter)
+{
+  const std::vector<Eigen::Vector3d> positions = reuseScene::grid(lamps, spacing, jitter, 7);
+  const auto start = std::chrono::steady_clock::now();
+  const vpIdentifierAssignment laid = layOver(positions);
+  const double layoutTime = milliseconds(start) / 1000;
+
+  Errors errors;
+  errors.missing = errors.reflections = 0.01;
+  Ceiling ceiling(reuseScene::mapOf(positions, laid.identifiers), errors, 11);
+  const vpLampMatcher matcher(reuseScene::rig(), ceiling.map);
+  const vpLampMatcher scanning(reuseScene::rig(), ceiling.map, vpLampMatcher::Search::scan);
+  Score cold, warm, scan;
+  double inView = 0;
+  for (int place = 0; place < places;) {
+    const View view = ceiling.look(ceiling.randomBase());
+    if (view.inView < 3) {
+      continue;
+    }
+    ++place;
+    inView += static_cast<double>(view.inView) / places;
+    cold.match(matcher, view, std::nullopt);
+    warm.match(matcher, view, hintFor(ceiling, view.wMb));
+    if (place % 10 == 0) {
+      scan.match(scanning, view, std::nullopt);
+    }
+  }
+  const double percent = 100.0 / places;
+  std::cout << std::fixed << "| " << name << " | " << lamps << " | " << std::setprecision(1) << inView
+            << " | " << laid.repeatedPairs << " | " << laid.repeatedTriples << " of " << laid.triples << " | "
+            << layoutTime << " | " << cold.right * percent << " / " << cold.refused * percent << " / "
+            << cold.wrong << " | " << warm.right * percent << " / " << warm.refused * percent << " / "
+            << warm.wrong << std::setprecision(3) << " | " << cold.times.mean() << " / "
+            << cold.times.share95() << " | " << warm.times.mean() << " / " << warm.times.share95() << " | "
+            << scan.times.mean() << " | " << std::setprecision(0) << scan.times.mean() / cold.times.mean()
+            << " |" << std::endl;
+}
+
+//! \e inView lamps and a reflection of one of them.
+void reflections(const std::string &name, const vpLampMap &map, size_t inView, bool inWall)
+{
+  Ceiling ceiling(map, Errors(), 13);
+  const vpLampMatcher matcher(reuseScene::rig(), map);
+  int views = 0, refused = 0, right = 0, wrong = 0, taken = 0, noFix = 0;
+  while (views < places) {
+    View view = ceiling.look(ceiling.randomBase());
+    if (view.observations.size() < inView) {
+      continue;
+    }
+    view.observations.resize(inView);
+    view.truth.resize(inView);
+    if (!ceiling.addReflection(view, view.truth[static_cast<size_t>(views) % inView], inWall)) {
+      continue;
+    }
+    ++views;
+    const vpLampMatch match = matcher.match(view.observations, view.all());
+    const bool isTaken = match.lamps.back() != vpLampMatch::noLamp;
+    taken += isTaken;
+    refused += !isTaken;
+    const bool isWrong = reuseScene::wrong(match, view);
+    wrong += isWrong;
+    noFix += match.outcome != Outcome::unique;
+    right += match.outcome == Outcome::unique && !isWrong;
+  }
+  const double percent = 100.0 / places;
+  std::cout << std::fixed << std::setprecision(1) << "| " << name << " | " << inView << " | "
+            << (inWall ? "in a wall" : "anywhere") << " | " << refused * percent << " | " << right * percent
+            << " | " << noFix * percent << " | " << wrong << " |" << std::endl;
+}
+} // namespace
+
+int main()
+{
+  std::cout
+      << identifiers << " identifiers, " << places
+      << " places; image points 0.03 to 0.1 px, survey 1 cm, lean 0.1 degrees, 1 % of lamps missing, 1 % "
+         "reflections\n\n"
+      << "| ceiling | lamps | in view | pairs repeated | triples repeated | layout, s | cold: right % / "
+         "refused % / wrong | last pose: right % / refused % / wrong | cold, ms (mean / 95 %) | last pose, "
+         "ms | scan, ms | scan / index |\n"
+      << "|---|---|---|---|---|---|---|---|---|---|---|---|" << std::endl;
+  for (size_t lamps : {100, 1000, 10000}) {
+    coldStarts("grid of 1.2 m", lamps, 1.2, 0);
+    coldStarts("1.2 m, off by up to 0.2 m", lamps, 1.2, 0.2);
+    coldStarts("grid of 2 m", lamps, 2, 0);
+    coldStarts("2 m, off by up to 0.3 m", lamps, 2, 0.3);
+  }
+
+  std::cout
+      << "\n| map | lamps in view | reflection | refused, % | fix kept and right, % | no fix, % | wrong "
+         "|\n|---|---|---|---|---|---|---|"
+      << std::endl;
+  const std::vector<Eigen::Vector3d> hall = reuseScene::grid(36, 1.2, 0, 7);
+  std::vector<size_t> own(hall.size());
+  std::iota(own.begin(), own.end(), 0);
+  const std::vector<Eigen::Vector3d> building = reuseScene::grid(1000, 1.2, 0, 7);
+  const vpLampMap alone = reuseScene::mapOf(hall, own);
+  const vpLampMap shared = reuseScene::mapOf(building, layOver(building).identifiers);
+  for (size_t inView : {3, 4, 5}) {
+    for (bool inWall : {false, true}) {
+      reflections("36 lamps, 36 identifiers", alone, inView, inWall);
+      reflections("1000 lamps, 50 identifiers", shared, inView, inWall);
+    }
+  }
+  return 0;
+}
