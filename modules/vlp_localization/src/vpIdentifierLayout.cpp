@@ -27,17 +27,22 @@ void expect(bool right, const std::string &name, double came, const std::string 
   }
 }
 
-//! Whether a circle of \e radius holds all three: then one view can.
-bool oneViewHolds(const Eigen::Vector2d &a, const Eigen::Vector2d &b, const Eigen::Vector2d &c, double radius)
+float square(float x)
+{
+  return x * x;
+}
+
+//! Radius of the smallest circle that holds all three, m.
+double enclosingRadius(const Eigen::Vector2d &a, const Eigen::Vector2d &b, const Eigen::Vector2d &c)
 {
   std::array<double, 3> squared = {(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()};
   std::sort(squared.begin(), squared.end());
   if (squared[2] >= squared[0] + squared[1]) { // right or obtuse: the longest side is the diameter
-    return squared[2] <= 4 * radius * radius;
+    return std::sqrt(squared[2]) / 2;
   }
   const Eigen::Vector2d ab = b - a, ac = c - a;
-  const double area = ab.x() * ac.y() - ab.y() * ac.x(); // twice the triangle's; R = abc / (4 area)
-  return squared[0] * squared[1] * squared[2] <= 4 * radius * radius * area * area;
+  const double area = std::abs(ab.x() * ac.y() - ab.y() * ac.x()); // twice the triangle's
+  return std::sqrt(squared[0] * squared[1] * squared[2]) / (2 * area);
 }
 
 //! The work of one lay().
@@ -72,6 +77,7 @@ private:
   std::vector<uint32_t> m_order;           // by x
   std::vector<std::vector<Near>> m_inView; // of each lamp, the nearest first
   std::vector<vpLampTriple> m_triples;
+  std::vector<float> m_weights; // of each: the closer the three, the more views hold them and no others
   std::vector<std::vector<uint32_t>> m_triplesOf; // each lamp, indices
   std::vector<uint32_t> m_given;                  // identifier of each lamp
   vpTripleTable m_table;
@@ -135,15 +141,16 @@ void Layer::findTriples()
   for (uint32_t a = 0; a < m_places.size(); ++a) {
     for (auto b = std::upper_bound(close[a].begin(), close[a].end(), a); b != close[a].end(); ++b) {
       for (auto c = b + 1; c != close[a].end(); ++c) {
-        const bool together = std::binary_search(close[*b].begin(), close[*b].end(), *c) &&
-                              oneViewHolds(m_places[a], m_places[*b], m_places[*c], m_settings.viewRadius);
-        if (!together) {
+        const double radius = enclosingRadius(m_places[a], m_places[*b], m_places[*c]);
+        if (radius > m_settings.viewRadius || !std::binary_search(close[*b].begin(), close[*b].end(), *c)) {
           continue;
         }
         for (uint32_t lamp : {a, *b, *c}) {
           m_triplesOf[lamp].push_back(static_cast<uint32_t>(m_triples.size()));
         }
         m_triples.push_back({a, *b, *c});
+        static const float least = 0.02F;
+        m_weights.push_back(least + square(1 - static_cast<float>(radius / m_settings.viewRadius)));
       }
     }
   }
@@ -189,7 +196,7 @@ double Layer::cost(uint32_t lamp, uint32_t identifier, double limit) const
       return other == lamp || m_given[other] != none;
     });
     if (complete) {
-      cost += static_cast<double>(m_table.count(lookOf(triple, lamp, identifier)));
+      cost += m_weights[t] * static_cast<double>(m_table.count(lookOf(triple, lamp, identifier)));
     }
     if (cost > limit) {
       break;

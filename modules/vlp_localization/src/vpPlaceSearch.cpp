@@ -186,22 +186,19 @@ void vpPlaceSearch::hypothesise(size_t i, size_t first, size_t j, size_t second)
 //! Finds the other lamps of a place, fits it to all of them, and keeps it where it may matter.
 void vpPlaceSearch::settle(Place &place)
 {
-  gather(place);
-  size_t most = 0;
-  for (const Place &known : m_places) {
-    most = std::max(most, known.count);
-  }
-  if (place.count < fewest() || place.count + 1 < most) {
+  // Two lamps fewer than another place: e to minus two gains, and never an answer.
+  const size_t needed = std::max(fewest(), m_most - std::min<size_t>(m_most, 1));
+  if (!gather(place, needed)) {
     return;
   }
   static const int rounds = 2; // lamps that the pair alone expected too far away, or too near
   for (int round = 0; round < rounds; ++round) {
-    if (!refine(place)) {
+    if (!refine(place) || !gather(place, needed)) {
       return;
     }
-    gather(place);
   }
-  if (place.count >= fewest() && refine(place) && withinBounds(place, 0)) {
+  if (refine(place) && withinBounds(place, 0)) {
+    m_most = std::max(m_most, place.count);
     judge(place);
     keep(place);
   }
@@ -280,14 +277,15 @@ void vpPlaceSearch::lampsNear(const Place &place, size_t i, const vpSeenLamp::Op
   m_near.erase(std::remove_if(m_near.begin(), m_near.end(), outside), m_near.end());
 }
 
-//! For each region the lamp that fits best, each lamp once.
-void vpPlaceSearch::gather(Place &place) const
+//! For each region the lamp that fits best, each lamp once. False, and nothing changed, where these are fewer
+//! than \e needed.
+bool vpPlaceSearch::gather(Place &place, size_t needed) const
 {
   const Fit fit = fitOf(place);
   std::vector<double> distances(m_seen.size());
   std::vector<size_t> lamps(m_seen.size(), noLamp);
-  place.count = 0;
-  for (size_t i = 0; i < m_seen.size(); ++i) {
+  size_t count = 0;
+  for (size_t i = 0; i < m_seen.size() && count + (m_seen.size() - i) >= needed; ++i) {
     const double doubt = place.lamps[i] != noLamp ? 0 : poseVariance(fit, i);
     double best = -std::numeric_limits<double>::infinity();
     for (const vpSeenLamp::Option &option : m_seen[i].options) {
@@ -307,10 +305,15 @@ void vpPlaceSearch::gather(Place &place) const
     if (lamps[i] != noLamp && other < i) {
       lamps[distances[i] < distances[other] ? other : i] = noLamp;
     } else if (lamps[i] != noLamp) {
-      ++place.count;
+      ++count;
     }
   }
+  if (count < needed) {
+    return false;
+  }
   place.lamps = lamps;
+  place.count = count;
+  return true;
 }
 
 /*!

@@ -97,7 +97,7 @@ private:
   double poseVariance(const Fit &fit, size_t i) const;
   Fit fitOf(const Place &place) const;
   void lampsNear(const Place &place, size_t i, const vpSeenLamp::Option &option, double poseVariance) const;
-  void gather(Place &place) const;
+  bool gather(Place &place, size_t needed) const;
   bool mistakable(const Place &place, const Fit &fit, size_t i) const;
   bool refine(Place &place) const;
   void judge(Place &place) const;
@@ -111,6 +111,7 @@ private:
   const Bounds m_bounds;
   std::vector<Place> m_places;
   size_t m_hypotheses = 0;
+  size_t m_most = 0;                                       // lamps that a place explained so far
   mutable std::vector<size_t> m_firsts, m_seconds, m_near; // what the index found
 };
 
