@@ -106,7 +106,7 @@ std::string several(const std::vector<Place> &places, size_t seen)
 {
   const std::string lamps = std::to_string(seen) + " lamps";
   if (places.size() < 2) {
-    return lamps + " fit one place of the map, yet not better than chance would";
+    return lamps + " fit one place of the map, but not well enough to be sure of it";
   }
   return lamps + " fit " + std::to_string(places.size()) + " places of the map about equally well, as " +
          shown(places[0]) + " and " + shown(places[1]);
@@ -165,7 +165,8 @@ const Place *decidedByHint(const vpPlaceSearch &search, const vpPlaceSearch::Bou
       nearest = &place;
     }
   }
-  return nearest != nullptr && nearest->count == most ? nearest : nullptr;
+  const bool decided = nearest != nullptr && nearest->count == most && !search.tooFewOnALine(*nearest);
+  return decided ? nearest : nullptr;
 }
 } // namespace
 
@@ -249,7 +250,7 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
     match.outcome = complete ? vpLampMatch::Outcome::none : vpLampMatch::Outcome::ambiguous;
     return match;
   }
-  if (complete && oddsOf(search) >= minOdds) {
+  if (complete && oddsOf(search) >= minOdds && !search.tooFewOnALine(search.places()[0])) {
     accept(search, search.places()[0]);
     return match;
   }

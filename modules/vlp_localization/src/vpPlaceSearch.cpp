@@ -352,6 +352,29 @@ bool vpPlaceSearch::refine(Place &place) const
   return depth > leastDepth;
 }
 
+/*!
+  Lamps on one line look the same in a mirror: seen in a glass wall, they would put the robot behind it. So
+  they are no place where more than a quarter of the regions stays unexplained.
+*/
+bool vpPlaceSearch::tooFewOnALine(const Place &place) const
+{
+  if (4 * place.count >= 3 * m_seen.size()) {
+    return false;
+  }
+  const Fit fit = fitOf(place);
+  Complex slant; // the spread is the sum of the squared deviations along and across the line, this their
+                 // difference
+  for (size_t i = 0; i < m_seen.size(); ++i) {
+    if (place.lamps[i] != noLamp) {
+      const double depth = m_index.lamp(place.lamps[i]).height - place.height;
+      const Complex off = m_seen[i].ray - fit.middle;
+      slant += off * off / variance(i, place.lamps[i], depth);
+    }
+  }
+  const double across = 0.5 * (fit.spread - std::abs(slant)) * square(fit.lampHeight - place.height);
+  return across < square(gate) * static_cast<double>(place.count);
+}
+
 //! What a lamp adds to the log evidence where its residual is 0.
 double vpPlaceSearch::gain(size_t i, double variance, double depth) const
 {

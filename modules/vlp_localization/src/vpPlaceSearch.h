@@ -70,6 +70,8 @@ public:
   double chance() const;
   //! Regions that a place has to explain.
   size_t fewest() const;
+  //! Whether so many regions stay unexplained that lamps on one line are too weak an argument.
+  bool tooFewOnALine(const Place &place) const;
   //! Takes those lamps out of \e place that another region, or another lamp of the same identifier, fits
   //! nearly as well.
   void dropUndecided(Place &place) const;

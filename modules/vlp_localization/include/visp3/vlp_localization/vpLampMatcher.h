@@ -87,7 +87,7 @@ public:
   double baseHeightSigma = 0.1; // m, standard deviation
   double strangers = 0.1;       // regions a picture that show no lamp of the map directly, on average
   double minOdds = 100;         // a place has to be this many times likelier than all others together
-  double minShare = 0.5;        // share of the regions that a place has to explain, and two at least
+  double minShare = 0.6;        // share of the regions that a place has to explain, and two at least
   size_t maxHypotheses = 20000; // places to look at before the picture counts as ambiguous
 
   vpLampMatcher(const vpVlpRig &rig, const vpLampMap &map, Search search = Search::index);
