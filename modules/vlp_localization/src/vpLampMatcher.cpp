@@ -78,7 +78,7 @@ void addOptions(const vpLampObservation &observation, const vpLampIndex &index, 
   }
   const size_t known = index.find(observation.id);
   if (observation.candidates.empty() && known != vpLampIndex::nowhere) {
-    seen.options.push_back({index.lamp(known).identifier, known, std::log(all)});
+    seen.options.push_back({index.lamp(known).identifier, known, observation.confidence, std::log(all)});
     seen.lamps = 1;
   }
 }
@@ -102,25 +102,20 @@ std::string shown(const Place &place)
   return text.str();
 }
 
-std::string several(const std::vector<Place> &places, size_t seen)
+std::string whyNot(const std::vector<Place> &places, size_t seen, bool complete)
 {
   const std::string lamps = std::to_string(seen) + " lamps";
-  if (places.size() < 2) {
+  if (!complete) {
+    return lamps + " fit too many places of the map to look at them all";
+  }
+  if (places.empty()) {
+    return "no place of the map explains the " + lamps + " seen";
+  }
+  if (places.size() == 1) {
     return lamps + " fit one place of the map, but not well enough to be sure of it";
   }
   return lamps + " fit " + std::to_string(places.size()) + " places of the map about equally well, as " +
          shown(places[0]) + " and " + shown(places[1]);
-}
-
-//! Of the likeliest place against all others and a chance agreement together.
-double oddsOf(const vpPlaceSearch &search)
-{
-  const std::vector<Place> &places = search.places();
-  double against = std::exp(search.chance() - places[0].logEvidence);
-  for (size_t k = 1; k < places.size(); ++k) {
-    against += std::exp(places[k].logEvidence - places[0].logEvidence);
-  }
-  return 1 / against;
 }
 
 //! Where the camera can be, by the last pose of the base.
@@ -165,7 +160,8 @@ const Place *decidedByHint(const vpPlaceSearch &search, const vpPlaceSearch::Bou
       nearest = &place;
     }
   }
-  const bool decided = nearest != nullptr && nearest->count == most && !search.tooFewOnALine(*nearest);
+  const bool decided =
+      nearest != nullptr && nearest->count == most && !search.model().tooFewOnALine(*nearest);
   return decided ? nearest : nullptr;
 }
 } // namespace
@@ -188,17 +184,15 @@ void vpLampMatcher::check() const
          "pixels, and as many lines");
 }
 
-vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observations,
-                                 const std::vector<size_t> &usable,
-                                 const std::optional<vpPoseHint> &hint) const
+/*!
+  The regions that may be a lamp of the map, and of each the index of its observation.
+*/
+std::vector<vpSeenLamp> vpLampMatcher::seenLamps(const std::vector<vpLampObservation> &observations,
+                                                 const std::vector<size_t> &usable,
+                                                 std::vector<size_t> &which) const
 {
-  check();
-  const vpMountFrame mount(m_rig);
   const double tilt = std::max(tiltTolerance, m_rig.rotationSigma.head<2>().maxCoeff());
-  vpLampMatch match;
-  match.lamps.assign(observations.size(), vpLampMatch::noLamp);
   std::vector<vpSeenLamp> seen;
-  std::vector<size_t> which; // of the observations each seen lamp is
   for (size_t i : usable) {
     expect(i < observations.size(), "usable", static_cast<double>(i), "an index of the observations");
     vpSeenLamp lamp;
@@ -208,61 +202,68 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
       which.push_back(i);
     }
   }
+  return seen;
+}
+
+vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observations,
+                                 const std::vector<size_t> &usable,
+                                 const std::optional<vpPoseHint> &hint) const
+{
+  check();
+  vpLampMatch match;
+  match.lamps.assign(observations.size(), vpLampMatch::noLamp);
+  std::vector<size_t> which;
+  const std::vector<vpSeenLamp> seen = seenLamps(observations, usable, which);
   if (seen.size() < 2) {
     match.refusal =
         seen.empty() ? "no lamp of the map seen" : "one lamp of the map seen, two are needed for a position";
     return match;
   }
 
+  const vpMountFrame mount(m_rig);
   const double area = m_rig.width * m_rig.height / (m_rig.camera.get_px() * m_rig.camera.get_py());
-  vpPlaceSearch::Bounds bounds;
-  bounds.height = baseHeight + mount.btc.z();
-  bounds.heightSigma = baseHeightSigma;
+  vpPlaceSearch::Bounds anywhere;
+  anywhere.height = baseHeight + mount.btc.z();
+  anywhere.heightSigma = baseHeightSigma;
   const auto accept = [&](const vpPlaceSearch &search, Place place) {
     match.outcome = vpLampMatch::Outcome::unique;
-    match.odds = oddsOf(search);
+    match.odds = search.odds();
     match.wMb = baseOf(place, mount);
     search.dropUndecided(place);
     for (size_t k = 0; k < seen.size(); ++k) {
       match.lamps[which[k]] = place.lamps[k];
     }
+    return match;
   };
 
   // Near the last pose: the answer where it leaves nothing unexplained.
   const bool hinted = hint && isPose(*hint);
+  const vpPlaceSearch::Bounds nearby = hinted ? around(anywhere, *hint, mount) : anywhere;
   if (hinted) {
-    vpPlaceSearch local(*this, *m_index, seen, area, around(bounds, *hint, mount));
-    const bool complete = local.run();
+    vpPlaceSearch local(*this, *m_index, seen, area, nearby);
+    local.run();
     match.hypotheses += local.hypotheses();
-    if (complete && !local.places().empty() && local.places()[0].count == seen.size() &&
-        oddsOf(local) >= minOdds) {
-      accept(local, local.places()[0]);
-      match.byHint = true;
-      return match;
+    match.byHint = local.decided() && local.places()[0].count == seen.size();
+    if (match.byHint) {
+      return accept(local, local.places()[0]);
     }
   }
 
-  vpPlaceSearch search(*this, *m_index, seen, area, bounds);
+  // The whole map; of places that explain the picture alike the last pose decides.
+  vpPlaceSearch search(*this, *m_index, seen, area, anywhere);
   const bool complete = search.run();
   match.hypotheses += search.hypotheses();
-  if (search.places().empty()) {
-    match.refusal = "no place of the map explains the " + std::to_string(seen.size()) + " lamps seen";
-    match.outcome = complete ? vpLampMatch::Outcome::none : vpLampMatch::Outcome::ambiguous;
-    return match;
+  if (search.decided()) {
+    return accept(search, search.places()[0]);
   }
-  if (complete && oddsOf(search) >= minOdds && !search.tooFewOnALine(search.places()[0])) {
-    accept(search, search.places()[0]);
-    return match;
-  }
-  const Place *place =
-      complete && hinted ? decidedByHint(search, around(bounds, *hint, mount), minOdds) : nullptr;
+  const Place *place = complete && hinted ? decidedByHint(search, nearby, minOdds) : nullptr;
   if (place != nullptr) {
-    accept(search, *place);
-    return match;
+    return accept(search, *place);
   }
-  match.outcome = vpLampMatch::Outcome::ambiguous;
-  match.odds = complete ? oddsOf(search) : 0;
-  match.refusal = several(search.places(), seen.size());
+  const bool none = complete && search.places().empty();
+  match.outcome = none ? vpLampMatch::Outcome::none : vpLampMatch::Outcome::ambiguous;
+  match.odds = complete && !none ? search.odds() : 0;
+  match.refusal = whyNot(search.places(), seen.size(), complete);
   return match;
 }
 

@@ -14,8 +14,8 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double gate = 4;          // standard deviations, beyond which a lamp is not where the pose expects it
-const double leastDepth = 0.05; // m from the camera up to a lamp
+const double gate = vpPlaceModel::gate;
+const double leastDepth = vpPlaceModel::leastDepth;
 const double negligible = 20;   // a place e to this power less likely than the best is forgotten
 const double slackOfPair = 0.3; // m and rad, by which a pair may miss the bounds that all its lamps keep
 const size_t maxPlaces = 2000;  // of a picture that as many explain nobody asks which
@@ -29,30 +29,24 @@ double square(double x)
 
 vpPlaceSearch::vpPlaceSearch(const vpLampMatcher &settings, const vpLampIndex &index,
                              const std::vector<vpSeenLamp> &seen, double pictureArea, const Bounds &bounds)
-    : m_settings(settings), m_index(index), m_seen(seen), m_area(pictureArea), m_bounds(bounds)
+    : m_model(settings, index, seen, pictureArea, bounds), m_settings(settings), m_index(index), m_seen(seen),
+      m_bounds(bounds)
 {
-}
-
-size_t vpPlaceSearch::fewest() const
-{
-  return std::max<size_t>(
-      2, static_cast<size_t>(std::ceil(m_settings.minShare * static_cast<double>(m_seen.size()))));
 }
 
 bool vpPlaceSearch::run()
 {
   const std::vector<size_t> order = ordered();
-  bool allowed = true;
   // A pose that all pairs of the first k + 1 regions miss has one of them at most.
-  for (size_t k = 1; k < order.size() && allowed && !complete(k); ++k) {
-    for (size_t i = 0; i < k && allowed; ++i) {
+  for (size_t k = 1; k < order.size() && m_allowed && !complete(k); ++k) {
+    for (size_t i = 0; i < k && m_allowed; ++i) {
       tryPair(order[i], order[k]);
-      allowed = m_hypotheses < m_settings.maxHypotheses && m_places.size() < maxPlaces;
+      m_allowed = m_hypotheses < m_settings.maxHypotheses && m_places.size() < maxPlaces;
     }
   }
   std::stable_sort(m_places.begin(), m_places.end(),
                    [](const Place &a, const Place &b) { return a.logEvidence > b.logEvidence; });
-  return allowed;
+  return m_allowed;
 }
 
 /*!
@@ -86,7 +80,7 @@ std::vector<size_t> vpPlaceSearch::ordered() const
 //! Whether a pose that leaves out all but one of the first \e tried regions is no rival of the best any more.
 bool vpPlaceSearch::complete(size_t tried) const
 {
-  if (m_seen.size() - tried + 1 < fewest()) {
+  if (m_seen.size() - tried + 1 < m_model.fewest()) {
     return true;
   }
   const auto best = std::max_element(m_places.begin(), m_places.end(), [](const Place &a, const Place &b) {
@@ -99,7 +93,8 @@ bool vpPlaceSearch::complete(size_t tried) const
   for (size_t i = 0; i < m_seen.size(); ++i) {
     const double depth = 0.5 * (m_index.lowest() + m_index.highest()) - best->height;
     leastGain = std::min(
-        leastGain, gain(i, square(m_settings.mapTolerance) + square(depth) * m_seen[i].variance, depth));
+        leastGain,
+        m_model.gain(i, square(m_settings.mapTolerance) + square(depth) * m_seen[i].variance, depth));
   }
   static const double volume = 10; // what the prior of the pose and the volume of poses that fit can make up
   const double more = static_cast<double>(tried - 1 + best->count - m_seen.size());
@@ -140,7 +135,8 @@ void vpPlaceSearch::tryPair(size_t i, size_t j)
       }
       // |P2 - P1| = |H (q2 - q1) + rise q2|
       const double rise = std::max(m_index.highest() - lamp.height, lamp.height - m_index.lowest());
-      const double doubt = gate * std::sqrt(variance(i, first, depth) + variance(j, first, depth));
+      const double doubt =
+          gate * std::sqrt(m_model.variance(i, first, depth) + m_model.variance(j, first, depth));
       const double margin = rise * std::abs(other) + doubt;
       const double inner = (depth - heightRange) * apart - margin;
       const double outer = (depth + heightRange) * apart + margin;
@@ -172,7 +168,7 @@ void vpPlaceSearch::hypothesise(size_t i, size_t first, size_t j, size_t second)
     place.height = a.height - H;
     place.heading = std::polar(1.0, pair.heading(H));
     place.camera = a.place - H * place.heading * m_seen[i].ray;
-    if (!withinBounds(place, slackOfPair)) {
+    if (!m_model.withinBounds(place, slackOfPair)) {
       continue;
     }
     place.lamps.assign(m_seen.size(), noLamp);
@@ -187,111 +183,38 @@ void vpPlaceSearch::hypothesise(size_t i, size_t first, size_t j, size_t second)
 void vpPlaceSearch::settle(Place &place)
 {
   // Two lamps fewer than another place: e to minus two gains, and never an answer.
-  const size_t needed = std::max(fewest(), m_most - std::min<size_t>(m_most, 1));
+  const size_t needed = std::max(m_model.fewest(), m_most - std::min<size_t>(m_most, 1));
   if (!gather(place, needed)) {
     return;
   }
   static const int rounds = 2; // lamps that the pair alone expected too far away, or too near
   for (int round = 0; round < rounds; ++round) {
-    if (!refine(place) || !gather(place, needed)) {
+    if (!m_model.refine(place) || !gather(place, needed)) {
       return;
     }
   }
-  if (refine(place) && withinBounds(place, 0)) {
+  if (m_model.refine(place) && m_model.withinBounds(place, 0)) {
     m_most = std::max(m_most, place.count);
-    judge(place);
+    m_model.judge(place);
     keep(place);
   }
-}
-
-bool vpPlaceSearch::withinBounds(const Place &place, double slack) const
-{
-  if (std::abs(place.height - m_bounds.height) > gate * m_bounds.heightSigma + slack) {
-    return false;
-  }
-  return m_bounds.anywhere ||
-         (std::abs(place.camera - m_bounds.around) <= m_bounds.reach + slack &&
-          std::abs(std::arg(place.heading * std::polar(1.0, -m_bounds.heading))) <= m_bounds.turn + slack);
-}
-
-//! Where the ray of region \e i meets the height of a lamp, m.
-vpPlaceSearch::Complex vpPlaceSearch::expected(const Place &place, size_t i, double lampHeight) const
-{
-  return place.camera + (lampHeight - place.height) * place.heading * m_seen[i].ray;
-}
-
-//! Of the distance between a lamp and the point that the ray of region \e i leads to, in each direction, m^2.
-double vpPlaceSearch::variance(size_t i, size_t lamp, double depth) const
-{
-  return square(std::max(m_index.lamp(lamp).positionSigma, m_settings.mapTolerance)) +
-         square(depth) * m_seen[i].variance;
-}
-
-//! Squared, in standard deviations. \param poseVariance of the point that the ray leads to, m^2.
-double vpPlaceSearch::distance(const Place &place, size_t i, size_t lamp, double poseVariance) const
-{
-  const double height = m_index.lamp(lamp).height;
-  return std::norm(m_index.lamp(lamp).place - expected(place, i, height)) /
-         (variance(i, lamp, height - place.height) + poseVariance);
-}
-
-vpPlaceSearch::Fit vpPlaceSearch::fitOf(const Place &place) const
-{
-  Fit fit;
-  for (size_t i = 0; i < m_seen.size(); ++i) {
-    if (place.lamps[i] != noLamp) {
-      const double height = m_index.lamp(place.lamps[i]).height;
-      const double w = 1 / variance(i, place.lamps[i], height - place.height);
-      fit.weight += w;
-      fit.middle += w * m_seen[i].ray;
-      fit.spread += w * std::norm(m_seen[i].ray);
-      fit.lampHeight += w * height;
-    }
-  }
-  fit.middle /= fit.weight;
-  fit.lampHeight /= fit.weight;
-  fit.spread -= fit.weight * std::norm(fit.middle);
-  return fit;
-}
-
-double vpPlaceSearch::poseVariance(const Fit &fit, size_t i) const
-{
-  return 1 / fit.weight + std::norm(m_seen[i].ray - fit.middle) / fit.spread;
-}
-
-//! Sets m_near to the lamps that region \e i may be and that hang where its ray leads.
-void vpPlaceSearch::lampsNear(const Place &place, size_t i, const vpSeenLamp::Option &option,
-                              double poseVariance) const
-{
-  const double middle = 0.5 * (m_index.lowest() + m_index.highest());
-  const double halfRange = 0.5 * (m_index.highest() - m_index.lowest());
-  const double sigma =
-      std::sqrt(square(std::max(m_settings.mapTolerance, m_index.greatestSigma())) +
-                square(m_index.highest() - place.height) * m_seen[i].variance + poseVariance);
-  m_index.within(option.identifier, expected(place, i, middle),
-                 gate * sigma + halfRange * std::abs(m_seen[i].ray), m_near);
-  const auto outside = [&](size_t lamp) {
-    return (option.only != vpLampIndex::nowhere && option.only != lamp) ||
-           distance(place, i, lamp, poseVariance) > square(gate);
-  };
-  m_near.erase(std::remove_if(m_near.begin(), m_near.end(), outside), m_near.end());
 }
 
 //! For each region the lamp that fits best, each lamp once. False, and nothing changed, where these are fewer
 //! than \e needed.
 bool vpPlaceSearch::gather(Place &place, size_t needed) const
 {
-  const Fit fit = fitOf(place);
+  const Fit fit = m_model.fitOf(place);
   std::vector<double> distances(m_seen.size());
   std::vector<size_t> lamps(m_seen.size(), noLamp);
   size_t count = 0;
   for (size_t i = 0; i < m_seen.size() && count + (m_seen.size() - i) >= needed; ++i) {
-    const double doubt = place.lamps[i] != noLamp ? 0 : poseVariance(fit, i);
+    const double doubt = place.lamps[i] != noLamp ? 0 : m_model.poseVariance(fit, i);
     double best = -std::numeric_limits<double>::infinity();
     for (const vpSeenLamp::Option &option : m_seen[i].options) {
-      lampsNear(place, i, option, doubt);
+      m_model.lampsNear(place, i, option, doubt, m_near);
       for (size_t lamp : m_near) {
-        const double d = distance(place, i, lamp, doubt);
+        const double d = m_model.distance(place, i, lamp, doubt);
         if (option.weight - 0.5 * d > best) {
           best = option.weight - 0.5 * d;
           lamps[i] = lamp;
@@ -314,111 +237,6 @@ bool vpPlaceSearch::gather(Place &place, size_t needed) const
   place.lamps = lamps;
   place.count = count;
   return true;
-}
-
-/*!
-  Weighted least squares of the camera's place C and of w = heading * height over P_k = C + w q_k, lamps at
-  other heights than the mean moved there along their rays; |w| weighed against the height that is expected.
-*/
-bool vpPlaceSearch::refine(Place &place) const
-{
-  if (place.count < 2) {
-    return false;
-  }
-  const Fit fit = fitOf(place);
-  if (!(fit.spread > 0)) {
-    return false;
-  }
-  Complex mean, slope;
-  for (size_t i = 0; i < m_seen.size(); ++i) {
-    if (place.lamps[i] != noLamp) {
-      const vpLampIndex::Lamp &lamp = m_index.lamp(place.lamps[i]);
-      const double w = 1 / variance(i, place.lamps[i], lamp.height - place.height);
-      const Complex level = lamp.place - place.heading * (lamp.height - fit.lampHeight) * m_seen[i].ray;
-      mean += w * level;
-      slope += w * level * std::conj(m_seen[i].ray - fit.middle);
-    }
-  }
-  slope /= fit.spread;
-  if (!(std::abs(slope) > leastDepth)) {
-    return false;
-  }
-  const double prior = 1 / square(m_bounds.heightSigma);
-  const double depth =
-      (fit.spread * std::abs(slope) + prior * (fit.lampHeight - m_bounds.height)) / (fit.spread + prior);
-  place.heading = slope / std::abs(slope);
-  place.height = fit.lampHeight - depth;
-  place.camera = mean / fit.weight - place.heading * depth * fit.middle;
-  return depth > leastDepth;
-}
-
-/*!
-  Lamps on one line look the same in a mirror: seen in a glass wall, they would put the robot behind it. So
-  they are no place where more than a quarter of the regions stays unexplained.
-*/
-bool vpPlaceSearch::tooFewOnALine(const Place &place) const
-{
-  if (4 * place.count >= 3 * m_seen.size()) {
-    return false;
-  }
-  const Fit fit = fitOf(place);
-  Complex slant; // the spread is the sum of the squared deviations along and across the line, this their
-                 // difference
-  for (size_t i = 0; i < m_seen.size(); ++i) {
-    if (place.lamps[i] != noLamp) {
-      const double depth = m_index.lamp(place.lamps[i]).height - place.height;
-      const Complex off = m_seen[i].ray - fit.middle;
-      slant += off * off / variance(i, place.lamps[i], depth);
-    }
-  }
-  const double across = 0.5 * (fit.spread - std::abs(slant)) * square(fit.lampHeight - place.height);
-  return across < square(gate) * static_cast<double>(place.count);
-}
-
-//! What a lamp adds to the log evidence where its residual is 0.
-double vpPlaceSearch::gain(size_t i, double variance, double depth) const
-{
-  double weight = -std::numeric_limits<double>::infinity();
-  for (const vpSeenLamp::Option &option : m_seen[i].options) {
-    weight = std::max(weight, option.weight);
-  }
-  return weight + std::log(m_area / m_settings.strangers) + std::log(square(depth) / (2 * M_PI * variance));
-}
-
-void vpPlaceSearch::judge(Place &place) const
-{
-  const Fit fit = fitOf(place);
-  double sum = 0;
-  for (size_t i = 0; i < m_seen.size(); ++i) {
-    const size_t lamp = place.lamps[i];
-    if (lamp != noLamp) {
-      const double depth = m_index.lamp(lamp).height - place.height;
-      double weight = -std::numeric_limits<double>::infinity();
-      for (const vpSeenLamp::Option &option : m_seen[i].options) {
-        if (option.identifier == m_index.lamp(lamp).identifier) {
-          weight = std::max(weight, option.weight);
-        }
-      }
-      sum += weight + std::log(m_area / m_settings.strangers) - 0.5 * distance(place, i, lamp, 0) +
-             std::log(square(depth) / (2 * M_PI * variance(i, lamp, depth)));
-    }
-  }
-  const double depth = fit.lampHeight - place.height;
-  const double sigma = m_bounds.heightSigma;
-  const double room = m_bounds.anywhere ? m_index.area(depth) : M_PI * square(m_bounds.reach);
-  // Density over C and w: that of place, heading and height, and d^2w = |w| dheight dheading.
-  const double prior = -std::log(room * 2 * m_bounds.turn * depth * std::sqrt(2 * M_PI) * sigma) -
-                       0.5 * square((place.height - m_bounds.height) / sigma);
-  const double volume = 2 * std::log(2 * M_PI) - std::log(fit.weight) -
-                        0.5 * std::log(fit.spread * (fit.spread + 1 / square(sigma)));
-  place.logEvidence = sum + prior + volume;
-}
-
-double vpPlaceSearch::chance() const
-{
-  const double depth = std::max(leastDepth, 0.5 * (m_index.lowest() + m_index.highest()) - m_bounds.height);
-  const double inView = static_cast<double>(m_index.size()) * square(depth) * m_area / m_index.area(depth);
-  return std::log(1 + static_cast<double>(m_seen.size()) * inView / m_settings.strangers);
 }
 
 void vpPlaceSearch::keep(const Place &place)
@@ -450,17 +268,17 @@ void vpPlaceSearch::keep(const Place &place)
 //! Whether another region may be the lamp of region \e i nearly as well, or that region another lamp.
 bool vpPlaceSearch::mistakable(const Place &place, const Fit &fit, size_t i) const
 {
-  const double limit = distance(place, i, place.lamps[i], 0) + 2 * std::log(m_settings.minOdds);
+  const double limit = m_model.distance(place, i, place.lamps[i], 0) + 2 * std::log(m_settings.minOdds);
   for (size_t j = 0; j < m_seen.size(); ++j) {
     if (j != i && place.lamps[j] != noLamp) {
       continue;
     }
-    const double doubt = poseVariance(fit, j);
+    const double doubt = m_model.poseVariance(fit, j);
     for (const vpSeenLamp::Option &option : m_seen[j].options) {
-      lampsNear(place, j, option, doubt);
+      m_model.lampsNear(place, j, option, doubt, m_near);
       for (size_t lamp : m_near) {
         const bool used = std::find(place.lamps.begin(), place.lamps.end(), lamp) != place.lamps.end();
-        if ((j == i ? !used : lamp == place.lamps[i]) && distance(place, j, lamp, doubt) < limit) {
+        if ((j == i ? !used : lamp == place.lamps[i]) && m_model.distance(place, j, lamp, doubt) < limit) {
           return true;
         }
       }
@@ -469,9 +287,24 @@ bool vpPlaceSearch::mistakable(const Place &place, const Fit &fit, size_t i) con
   return false;
 }
 
+double vpPlaceSearch::odds() const
+{
+  double against = std::exp(m_model.chance() - m_places[0].logEvidence);
+  for (size_t k = 1; k < m_places.size(); ++k) {
+    against += std::exp(m_places[k].logEvidence - m_places[0].logEvidence);
+  }
+  return 1 / against;
+}
+
+bool vpPlaceSearch::decided() const
+{
+  return m_allowed && !m_places.empty() && odds() >= m_settings.minOdds &&
+         !m_model.tooFewOnALine(m_places[0]);
+}
+
 void vpPlaceSearch::dropUndecided(Place &place) const
 {
-  const Fit fit = fitOf(place);
+  const Fit fit = m_model.fitOf(place);
   std::vector<size_t> decided = place.lamps;
   for (size_t i = 0; i < m_seen.size(); ++i) {
     if (place.lamps[i] != noLamp && mistakable(place, fit, i)) {

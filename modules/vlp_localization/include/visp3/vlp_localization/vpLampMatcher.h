@@ -18,6 +18,7 @@
 BEGIN_VISP_NAMESPACE
 
 class vpLampIndex;
+struct vpSeenLamp;
 
 //! Where the robot was seen last, and how far from there it can be by now.
 struct VISP_EXPORT vpPoseHint {
@@ -102,6 +103,8 @@ public:
 
 private:
   void check() const;
+  std::vector<vpSeenLamp> seenLamps(const std::vector<vpLampObservation> &observations,
+                                    const std::vector<size_t> &usable, std::vector<size_t> &which) const;
 
   vpVlpRig m_rig;
   std::shared_ptr<const vpLampIndex> m_index; // never changes: copies of the matcher share it
