@@ -312,7 +312,11 @@ TEST(LampMatcher, ChoosesAmongSeveralIdentifiersOfARegion)
       const size_t right = lamp.candidates[0].identifier;
       lamp.candidates = {{(right + 1) % 20, 0.5}, {right, 0.3}, {(right + 7) % 20, 0.15}};
     }
-    tally.add(matcher.match(view.observations, view.all()), view);
+    const vpLampMatch match = matcher.match(view.observations, view.all());
+    tally.add(match, view);
+    if (match.outcome == Outcome::unique) {
+      EXPECT_EQ(match.probabilities[0], 0.3);
+    }
   }
   EXPECT_EQ(tally.wrong, 0);
   EXPECT_GE(tally.unique, 0.95 * tally.views);

@@ -67,20 +67,31 @@ void addOptions(const vpLampObservation &observation, const vpLampIndex &index, 
 {
   const double all = static_cast<double>(index.size());
   for (const vpLedIdCandidate &candidate : observation.candidates) {
-    if (candidate.identifier < index.identifiers() && candidate.probability > 0) {
-      const double carriers = static_cast<double>(index.lampsOf(candidate.identifier).size());
-      if (carriers > 0) {
-        seen.options.push_back(
-            {candidate.identifier, vpLampIndex::nowhere, std::log(candidate.probability * all / carriers)});
-        seen.lamps += carriers;
-      }
+    const double p = candidate.probability;
+    const size_t carriers =
+        candidate.identifier < index.identifiers() ? index.lampsOf(candidate.identifier).size() : 0;
+    if (carriers > 0 && p > 0) {
+      const double n = static_cast<double>(carriers);
+      seen.options.push_back({candidate.identifier, vpLampIndex::nowhere, p, std::log(p * all / n)});
+      seen.lamps += n;
     }
   }
   const size_t known = index.find(observation.id);
   if (observation.candidates.empty() && known != vpLampIndex::nowhere) {
-    seen.options.push_back({index.lamp(known).identifier, known, observation.confidence, std::log(all)});
+    const double p = observation.confidence > 0 ? std::min(1.0, observation.confidence) : 1;
+    seen.options.push_back({index.lamp(known).identifier, known, p, std::log(p * all)});
     seen.lamps = 1;
   }
+}
+
+double probabilityOf(const vpSeenLamp &seen, size_t lamp, const vpLampIndex &index)
+{
+  for (const vpSeenLamp::Option &option : seen.options) {
+    if (lamp != vpLampMatch::noLamp && option.identifier == index.lamp(lamp).identifier) {
+      return option.probability;
+    }
+  }
+  return 0;
 }
 
 vpHomogeneousMatrix baseOf(const Place &place, const vpMountFrame &mount)
@@ -212,6 +223,7 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   check();
   vpLampMatch match;
   match.lamps.assign(observations.size(), vpLampMatch::noLamp);
+  match.probabilities.assign(observations.size(), 0);
   std::vector<size_t> which;
   const std::vector<vpSeenLamp> seen = seenLamps(observations, usable, which);
   if (seen.size() < 2) {
@@ -232,6 +244,7 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
     search.dropUndecided(place);
     for (size_t k = 0; k < seen.size(); ++k) {
       match.lamps[which[k]] = place.lamps[k];
+      match.probabilities[which[k]] = probabilityOf(seen[k], place.lamps[k], *m_index);
     }
     return match;
   };

@@ -44,6 +44,7 @@ void nameByPlace(const vpLampMatch &match, const vpLampMap &map, std::vector<vpL
         lamp.remark = strangerRemark(lamp.id);
       } else {
         lamp.id = map.lamps[match.lamps[i]].id;
+        lamp.confidence = match.probabilities[i];
         lamp.remark.clear();
         named.push_back(i);
       }

@@ -44,8 +44,9 @@ struct VISP_EXPORT vpLampMatch {
     took no part.
   */
   std::vector<size_t> lamps;
+  std::vector<double> probabilities; // of each lamp's identifier, as its stripes say; 0 with noLamp
   vpHomogeneousMatrix wMb; // where unique: a level pose, good enough to tell lamps apart and for no more
-  double odds = 0;         // of this place against all others together
+  double odds = 0;         // of this place against all others together, whatever the last pose says of them
   bool byHint = false;     // found near the last pose, without a look at the rest of the map
   size_t hypotheses = 0;   // places that were looked at
 };
