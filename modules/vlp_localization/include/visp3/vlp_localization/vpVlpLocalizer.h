@@ -43,7 +43,7 @@ public:
   vpLedDetector detector;
   vpManyLampSolver manyLamps; // its attitude: mount or free
   vpTwoLampSolver twoLamps;
-  vpLampMatcher matcher;      // under the mount's attitude; free, lamps that blink alike do not count
+  vpLampMatcher matcher; // under the mount's attitude, with a map tolerance of its own; free: does not run
   double mapTolerance = 0.03; // m, how far lamps may hang from where the map says before they disagree, sigma
   double outlierLikelihood = 1e-4; // lamps disagree where their residuals are less likely than this
 
