@@ -113,6 +113,11 @@ std::string shown(const Place &place)
   return text.str();
 }
 
+std::string tooFew(size_t seen)
+{
+  return seen == 0 ? "no lamp of the map seen" : "one lamp of the map seen, two are needed for a position";
+}
+
 std::string whyNot(const std::vector<Place> &places, size_t seen, bool complete)
 {
   const std::string lamps = std::to_string(seen) + " lamps";
@@ -127,6 +132,15 @@ std::string whyNot(const std::vector<Place> &places, size_t seen, bool complete)
   }
   return lamps + " fit " + std::to_string(places.size()) + " places of the map about equally well, as " +
          shown(places[0]) + " and " + shown(places[1]);
+}
+
+//! Where the camera can be, of a base that stands on the floor.
+vpPlaceSearch::Bounds underTheLamps(const vpLampMatcher &settings, const vpMountFrame &mount)
+{
+  vpPlaceSearch::Bounds bounds;
+  bounds.height = settings.baseHeight + mount.btc.z();
+  bounds.heightSigma = settings.baseHeightSigma;
+  return bounds;
 }
 
 //! Where the camera can be, by the last pose of the base.
@@ -227,21 +241,18 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   std::vector<size_t> which;
   const std::vector<vpSeenLamp> seen = seenLamps(observations, usable, which);
   if (seen.size() < 2) {
-    match.refusal =
-        seen.empty() ? "no lamp of the map seen" : "one lamp of the map seen, two are needed for a position";
+    match.refusal = tooFew(seen.size());
     return match;
   }
 
   const vpMountFrame mount(m_rig);
   const double area = m_rig.width * m_rig.height / (m_rig.camera.get_px() * m_rig.camera.get_py());
-  vpPlaceSearch::Bounds anywhere;
-  anywhere.height = baseHeight + mount.btc.z();
-  anywhere.heightSigma = baseHeightSigma;
-  const auto accept = [&](const vpPlaceSearch &search, Place place) {
+  const vpPlaceSearch::Bounds anywhere = underTheLamps(*this, mount);
+  const auto accept = [&](const vpPlaceSearch &search, const Place &best) {
     match.outcome = vpLampMatch::Outcome::unique;
-    match.odds = search.odds();
-    match.wMb = baseOf(place, mount);
-    search.dropUndecided(place);
+    match.odds = search.odds(best);
+    match.wMb = baseOf(best, mount);
+    const Place place = search.withoutUndecided(best);
     for (size_t k = 0; k < seen.size(); ++k) {
       match.lamps[which[k]] = place.lamps[k];
       match.probabilities[which[k]] = probabilityOf(seen[k], place.lamps[k], *m_index);
@@ -275,7 +286,7 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   }
   const bool none = complete && search.places().empty();
   match.outcome = none ? vpLampMatch::Outcome::none : vpLampMatch::Outcome::ambiguous;
-  match.odds = complete && !none ? search.odds() : 0;
+  match.odds = complete && !none ? search.odds(search.places()[0]) : 0;
   match.refusal = whyNot(search.places(), seen.size(), complete);
   return match;
 }

@@ -287,32 +287,32 @@ bool vpPlaceSearch::mistakable(const Place &place, const Fit &fit, size_t i) con
   return false;
 }
 
-double vpPlaceSearch::odds() const
+double vpPlaceSearch::odds(const Place &place) const
 {
-  double against = std::exp(m_model.chance() - m_places[0].logEvidence);
-  for (size_t k = 1; k < m_places.size(); ++k) {
-    against += std::exp(m_places[k].logEvidence - m_places[0].logEvidence);
+  double against = std::exp(m_model.chance() - place.logEvidence);
+  for (const Place &other : m_places) {
+    against += &other == &place ? 0 : std::exp(other.logEvidence - place.logEvidence);
   }
   return 1 / against;
 }
 
 bool vpPlaceSearch::decided() const
 {
-  return m_allowed && !m_places.empty() && odds() >= m_settings.minOdds &&
+  return m_allowed && !m_places.empty() && odds(m_places[0]) >= m_settings.minOdds &&
          !m_model.tooFewOnALine(m_places[0]);
 }
 
-void vpPlaceSearch::dropUndecided(Place &place) const
+vpPlaceSearch::Place vpPlaceSearch::withoutUndecided(const Place &place) const
 {
   const Fit fit = m_model.fitOf(place);
-  std::vector<size_t> decided = place.lamps;
+  Place decided = place;
   for (size_t i = 0; i < m_seen.size(); ++i) {
     if (place.lamps[i] != noLamp && mistakable(place, fit, i)) {
-      decided[i] = noLamp;
-      --place.count;
+      decided.lamps[i] = noLamp;
+      --decided.count;
     }
   }
-  place.lamps = decided;
+  return decided;
 }
 
 END_VISP_NAMESPACE

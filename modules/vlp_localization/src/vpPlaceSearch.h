@@ -27,13 +27,13 @@ public:
   const vpPlaceModel &model() const { return m_model; }
   const std::vector<Place> &places() const { return m_places; }
   size_t hypotheses() const { return m_hypotheses; }
-  //! Of the likeliest place against all others and a chance agreement together.
-  double odds() const;
+  //! Of one of the places against all others and a chance agreement together.
+  double odds(const Place &place) const;
   //! Whether the likeliest place is the answer.
   bool decided() const;
-  //! Takes those lamps out of \e place that another region, or another lamp of the same identifier, fits
-  //! nearly as well.
-  void dropUndecided(Place &place) const;
+  //! \e place without those lamps that another region fits nearly as well, and without those whose region
+  //! another lamp of the same identifier fits nearly as well.
+  Place withoutUndecided(const Place &place) const;
 
 private:
   std::vector<size_t> ordered() const;
