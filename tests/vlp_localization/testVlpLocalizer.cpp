@@ -172,16 +172,67 @@ TEST(VlpLocalizer, TwoLampsOfWrongSizeGiveNoPosition)
   EXPECT_FALSE(location.fix.valid) << room.error(location.fix);
 }
 
-TEST(VlpLocalizer, OneIdSeenTwiceCountsForNeither)
+TEST(VlpLocalizer, ReflectionIsToldFromItsLampByItsPlace)
 {
   Room room;
   room.lamps.push_back({"reflection of A", {0, 0, 1.6}, room.lamps[0].frequency});
   const vpVlpLocation location = room.locate();
   ASSERT_TRUE(location.fix.valid) << location.fix.refusal;
-  EXPECT_EQ(location.fix.lamps.size(), 3u);
+  EXPECT_EQ(location.fix.lamps.size(), 4u);
   EXPECT_LT(room.error(location.fix), 0.001);
-  ASSERT_NE(find(location, "A"), nullptr);
-  EXPECT_NE(find(location, "A")->remark.find("2 times"), std::string::npos);
+  int refused = 0;
+  for (const vpLampObservation &lamp : location.observations) {
+    if (!lamp.accepted) {
+      ++refused;
+      EXPECT_EQ(lamp.remark, "a reflection of lamp A, or another lamp that blinks alike");
+      EXPECT_LT((lamp.point - Eigen::Vector2d(319.5, 239.5)).norm(), 60); // where (0, 0) is seen
+    }
+  }
+  EXPECT_EQ(refused, 1);
+}
+
+TEST(VlpLocalizer, LampAndReflectionThatFitAlikeCountForNeither)
+{
+  Room room;
+  room.lamps.erase(room.lamps.begin() + 2); // A, B and D, and A once more: as far from B and D as the lamp
+  room.lamps.pop_back();
+  room.lamps.push_back({"reflection of A", {0.4, 0.5, 1.6}, room.lamps[0].frequency});
+  const vpVlpLocation location = room.locate(); // A and B, or the reflection and B
+  EXPECT_FALSE(location.fix.valid);
+  EXPECT_NE(location.fix.refusal.find("2 places"), std::string::npos) << location.fix.refusal;
+  for (const vpLampObservation &lamp : location.observations) {
+    EXPECT_FALSE(lamp.accepted);
+    EXPECT_FALSE(lamp.remark.empty());
+  }
+}
+
+TEST(VlpLocalizer, FreeAttitudeLeavesOutAnIdSeenTwice)
+{
+  Room room;
+  room.lamps.push_back({"reflection of A", {0, 0, 1.6}, room.lamps[0].frequency});
+  vpVlpLocalizer localizer(room.rig(), room.map);
+  localizer.manyLamps.attitude = vpManyLampSolver::Attitude::free;
+  const vpVlpLocation location = localizer.process(room.frame());
+  for (const vpLampObservation &lamp : location.observations) {
+    EXPECT_FALSE(lamp.accepted && lamp.id == "A");
+    if (lamp.id == "A") {
+      EXPECT_NE(lamp.remark.find("2 times"), std::string::npos);
+    }
+  }
+}
+
+TEST(VlpLocalizer, LastPoseIsNoMoreThanAHint)
+{
+  Room room;
+  room.lamps.push_back({"reflection of A", {0, 0, 1.6}, room.lamps[0].frequency});
+  vpVlpLocalizer localizer(room.rig(), room.map);
+  ASSERT_TRUE(localizer.process(room.frame()).fix.valid);
+  room.x = 0.25;
+  room.y = 0.1;
+  room.yaw = -2;
+  const vpVlpLocation carried = localizer.process(room.frame());
+  ASSERT_TRUE(carried.fix.valid) << carried.fix.refusal;
+  EXPECT_LT(room.error(carried.fix), 0.001);
 }
 
 TEST(VlpLocalizer, NoLampOrOneLampIsARefusalInOneLine)

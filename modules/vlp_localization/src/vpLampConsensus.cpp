@@ -70,16 +70,11 @@ std::vector<size_t> vpLampConsensus::usable(std::vector<vpLampObservation> &obse
   std::vector<size_t> which;
   for (size_t i = 0; i < observations.size(); ++i) {
     vpLampObservation &lamp = observations[i];
-    if (lamp.id.empty()) {
+    if (lamp.id.empty() && lamp.candidates.empty()) {
       continue;
     }
-    const auto twins = std::count_if(observations.begin(), observations.end(),
-                                     [&](const vpLampObservation &other) { return other.id == lamp.id; });
     const double sigma = std::sqrt(lamp.covariance.trace());
-    if (twins > 1) {
-      lamp.remark = "seen " + std::to_string(twins) + " times: one of them is a reflection";
-    } else if (lamp.outline.shape == vpLampOutline::Shape::region ||
-               !(sigma < placed * lamp.outline.diameter())) {
+    if (lamp.outline.shape == vpLampOutline::Shape::region || !(sigma < placed * lamp.outline.diameter())) {
       lamp.remark =
           lamp.cut ? "cut by the picture's border: its middle is uncertain" : "its middle is uncertain";
     } else {
@@ -116,18 +111,21 @@ double vpLampConsensus::misfit(const vpVlpFix &fix, const std::vector<vpLampSigh
   return sum;
 }
 
-bool vpLampConsensus::agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const
+bool vpLampConsensus::agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps,
+                            const std::vector<size_t> &usable) const
 {
-  return fix.valid && chiSquareTail(misfit(fix, lamps), fix.degreesOfFreedom) > m_likelihood && sizesFit(fix);
+  return fix.valid && chiSquareTail(misfit(fix, lamps), fix.degreesOfFreedom) > m_likelihood &&
+         sizesFit(fix, usable);
 }
 
 //! Whether lamps whose size the map states look about that large from where the fix puts the camera.
-bool vpLampConsensus::sizesFit(const vpVlpFix &fix) const
+bool vpLampConsensus::sizesFit(const vpVlpFix &fix, const std::vector<size_t> &usable) const
 {
   static const double tolerance =
       0.3; // of the size: the map may mean the housing, the picture shows the light
   const vpHomogeneousMatrix cMw = fix.wMc.inverse();
-  for (const vpLampObservation &seen : m_observations) {
+  for (size_t i : usable) {
+    const vpLampObservation &seen = m_observations[i];
     const vpLamp *lamp = m_map.find(seen.id);
     if (lamp == nullptr || !std::isfinite(lamp->size) || seen.cut ||
         std::find(fix.lamps.begin(), fix.lamps.end(), seen.id) == fix.lamps.end()) {
@@ -153,7 +151,7 @@ vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &
   vpVlpFix fix = solver(lamps);
   // One of three could be any of them, and some few of many always agree by chance.
   const size_t fewestLeft = usable.size() - usable.size() / 4;
-  while (fix.valid && !agree(fix, lamps)) {
+  while (fix.valid && !agree(fix, lamps, usable)) {
     if (lamps.size() <= fewestLeft) {
       return refusal("lamps " + joined(fix.lamps) + " do not agree on one place");
     }

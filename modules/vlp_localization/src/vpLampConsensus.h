@@ -27,8 +27,8 @@ public:
                   double outlierLikelihood);
 
   /*!
-    Observations with an id that no other one has, whose place is known to a fraction of the lamp. Sets the
-    remark of the others.
+    Observations that may be a lamp of the map, whose place is known to a fraction of the lamp. Sets the
+    remark of those whose place is not.
   */
   static std::vector<size_t> usable(std::vector<vpLampObservation> &observations);
 
@@ -47,9 +47,10 @@ public:
 private:
   std::vector<vpLampSight> sights(const std::vector<size_t> &which) const;
   double misfit(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
-  bool agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
+  bool agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps,
+             const std::vector<size_t> &usable) const;
   vpVlpFix withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const;
-  bool sizesFit(const vpVlpFix &fix) const;
+  bool sizesFit(const vpVlpFix &fix, const std::vector<size_t> &usable) const;
 
   const vpLampMap &m_map;
   const vpVlpRig &m_rig;

@@ -171,7 +171,7 @@ std::vector<double> vpLampPair::heights(bool &disagree) const
 vpBasePose vpLampPair::pose(double H, const vpLampSight &first, const vpMountFrame &mount,
                             const Eigen::Matrix3d &level) const
 {
-  const double yaw = std::arg(step / (H * (ray[1] - ray[0]) + rise * ray[1]));
+  const double yaw = heading(H);
   const std::complex<double> camera =
       std::complex<double>(first.position.x(), first.position.y()) - H * std::polar(1.0, yaw) * ray[0];
   vpBasePose pose;

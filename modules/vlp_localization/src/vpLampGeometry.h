@@ -115,12 +115,22 @@ struct vpLampPair {
   vpLampPair(const vpLampSight &first, const vpLampSight &second, const vpMountFrame &mount,
              const Eigen::Matrix3d &level);
 
+  //! Of rays that are upright already.
+  vpLampPair(const std::complex<double> &step, double rise, const std::complex<double> &first,
+             const std::complex<double> &second)
+      : step(step), rise(rise), ray{first, second}, aboveHorizon{true, true}
+  {
+  }
+
   /*!
     Heights H of the first lamp above the camera, m, with both lamps above it: the roots of
     |step|^2 = |H (q2 - q1) + rise q2|^2. None, one or two. The rays must differ.
     \param disagree Set where the equation has no real root: no height fits both map and picture.
   */
   std::vector<double> heights(bool &disagree) const;
+
+  //! Heading of the base that sees the first lamp at height \e H above the camera, rad.
+  double heading(double H) const { return std::arg(step / (H * (ray[1] - ray[0]) + rise * ray[1])); }
 
   //! The pose that sees \e first at height \e H above the camera.
   vpBasePose pose(double H, const vpLampSight &first, const vpMountFrame &mount,

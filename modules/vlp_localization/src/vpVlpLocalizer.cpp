@@ -5,13 +5,15 @@
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vpLampConsensus.h"
+#include "vpLampNames.h"
 
 BEGIN_VISP_NAMESPACE
 
 vpVlpLocalizer::vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map)
-    : detector(rig, map), m_rig(rig), m_map(map)
+    : detector(rig, map), matcher(rig, map), m_rig(rig), m_map(map)
 {
 }
 
@@ -24,18 +26,47 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
   detector.detect(frame.I);
   location.observations = detector.observations();
 
-  // Lamps whose id and place in the picture can be relied on.
-  const std::vector<size_t> usable = vpLampConsensus::usable(location.observations);
+  // Lamps whose place in the picture can be relied on, and whose id can, once places have told apart what
+  // stripes do not: lamps that share an identifier, a lamp and its reflection.
+  std::vector<size_t> usable = vpLampConsensus::usable(location.observations);
+  std::string doubt;
+  if (!namedApart(location.observations, usable)) {
+    const vpLampMatch match = matchByPlace(location.observations, usable, frame.timestamp);
+    nameByPlace(match, m_map, location.observations, usable);
+    doubt = match.refusal;
+  }
 
   // Section 2.1.3: the pose from the rays to these lamps, two of them or all that agree with each other.
   const vpLampConsensus consensus(m_map, m_rig, location.observations, mapTolerance, outlierLikelihood);
   location.fix = consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
     return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
   });
+  if (usable.size() < 2 && !doubt.empty()) {
+    location.fix.refusal = doubt;
+  }
 
   // Who counted, and why the others did not.
   vpLampConsensus::explain(location.fix, usable, location.observations);
+  if (location.fix.valid && !location.fix.ambiguous) {
+    m_lastPose = {location.fix.wMb, frame.timestamp};
+  }
   return location;
+}
+
+vpLampMatch vpVlpLocalizer::matchByPlace(const std::vector<vpLampObservation> &observations,
+                                         const std::vector<size_t> &usable, double time) const
+{
+  if (manyLamps.attitude == vpManyLampSolver::Attitude::free && solver == Solver::all) {
+    vpLampMatch match;
+    match.refusal = "lamps that blink alike are told apart by the attitude of the mount only, and it is free";
+    return match;
+  }
+  std::optional<vpPoseHint> hint;
+  if (m_lastPose) {
+    const double since = std::abs(time - m_lastPose->time);
+    hint = vpPoseHint{m_lastPose->wMb, hintReach + maxSpeed * since, hintTurn + maxTurnRate * since};
+  }
+  return matcher.match(observations, usable, hint);
 }
 
 END_VISP_NAMESPACE

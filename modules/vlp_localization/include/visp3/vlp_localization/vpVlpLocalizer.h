@@ -5,10 +5,12 @@
 #ifndef vpVlpLocalizer_h
 #define vpVlpLocalizer_h
 
+#include <optional>
 #include <vector>
 
 #include <visp3/vlp_core/vpVlpFrame.h>
 #include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_localization/vpLampMatcher.h>
 #include <visp3/vlp_localization/vpManyLampSolver.h>
 #include <visp3/vlp_localization/vpTwoLampSolver.h>
 
@@ -23,6 +25,11 @@ struct VISP_EXPORT vpVlpLocation {
 
 /*!
   The whole system: a frame goes in, a pose comes out. process() is the paper's section 2, top to bottom.
+
+  A map may use one identifier for several lamps, and a reflection shows the identifier of its lamp. Where a
+  picture holds such lamps, `matcher` tells by their places which lamp each is. The last pose serves it as a
+  hint and nothing else: pictures whose lamps are told apart by their stripes alone are located each by
+  itself.
 */
 class VISP_EXPORT vpVlpLocalizer
 {
@@ -36,8 +43,14 @@ public:
   vpLedDetector detector;
   vpManyLampSolver manyLamps; // its attitude: mount or free
   vpTwoLampSolver twoLamps;
+  vpLampMatcher matcher; // under the mount's attitude, with a map tolerance of its own; free: does not run
   double mapTolerance = 0.03; // m, how far lamps may hang from where the map says before they disagree, sigma
   double outlierLikelihood = 1e-4; // lamps disagree where their residuals are less likely than this
+
+  double hintReach = 0.3; // m, how far from the last pose lamps that blink alike are looked for first,
+  double maxSpeed = 1;    // m/s, and more by this for the time since then
+  double hintTurn = 0.3;  // rad, likewise about the last heading
+  double maxTurnRate = 3; // rad/s
 
   vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map);
 
@@ -48,8 +61,17 @@ public:
   vpVlpLocation process(const vpVlpFrame &frame);
 
 private:
+  struct LastPose {
+    vpHomogeneousMatrix wMb;
+    double time = 0; // s
+  };
+
+  vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
+                           const std::vector<size_t> &usable, double time) const;
+
   vpVlpRig m_rig;
   vpLampMap m_map;
+  std::optional<LastPose> m_lastPose;
 };
 
 END_VISP_NAMESPACE

@@ -1,0 +1,294 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_localization/vpLampMatcher.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+#include "vpLampGeometry.h"
+#include "vpPlaceSearch.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+using Complex = vpPlaceSearch::Complex;
+using Place = vpPlaceSearch::Place;
+
+void expect(bool right, const std::string &name, double came, const std::string &expected)
+{
+  if (!right) {
+    throw vpException(vpException::badValue, "vpLampMatcher: %s is %s, expected %s", name.c_str(),
+                      vpNumberText(came).c_str(), expected.c_str());
+  }
+}
+
+double square(double x)
+{
+  return x * x;
+}
+
+double greatestEigenvalue(const Eigen::Matrix2d &m)
+{
+  const double half = 0.5 * m.trace();
+  return half + std::sqrt(std::max(0.0, half * half - m.determinant()));
+}
+
+//! The ray of an observation, turned upright. False where it does not point above the horizon.
+bool turnUpright(const vpLampObservation &observation, const vpVlpRig &rig, double tiltSigma,
+                 vpSeenLamp &seen)
+{
+  const vpLampSight sight = vpLampSight::from(vpLamp(), observation, rig.camera);
+  const Eigen::Matrix3d R = vpMountFrame(rig).bRc;
+  const Eigen::Vector3d up = R * sight.ray.homogeneous();
+  const double leastRise = 1e-3;
+  if (!up.allFinite() || !(up.z() > leastRise * up.norm())) {
+    return false;
+  }
+  const Eigen::Vector2d q = up.head<2>() / up.z();
+  const Eigen::Matrix2d byRay = (R.topLeftCorner<2, 2>() - q * R.block<1, 2>(2, 0)) / up.z();
+  seen.ray = {q.x(), q.y()};
+  // A lean moves all rays alike, which the pose takes up, but for a part that grows with their square.
+  seen.variance =
+      greatestEigenvalue(byRay * sight.covariance * byRay.transpose()) + square(tiltSigma * q.squaredNorm());
+  return std::isfinite(seen.variance);
+}
+
+//! What an observation may be, by its candidates or its id.
+void addOptions(const vpLampObservation &observation, const vpLampIndex &index, vpSeenLamp &seen)
+{
+  const double all = static_cast<double>(index.size());
+  for (const vpLedIdCandidate &candidate : observation.candidates) {
+    const double p = candidate.probability;
+    const size_t carriers =
+        candidate.identifier < index.identifiers() ? index.lampsOf(candidate.identifier).size() : 0;
+    if (carriers > 0 && p > 0) {
+      const double n = static_cast<double>(carriers);
+      seen.options.push_back({candidate.identifier, vpLampIndex::nowhere, p, std::log(p * all / n)});
+      seen.lamps += n;
+    }
+  }
+  const size_t known = index.find(observation.id);
+  if (observation.candidates.empty() && known != vpLampIndex::nowhere) {
+    const double p = observation.confidence > 0 ? std::min(1.0, observation.confidence) : 1;
+    seen.options.push_back({index.lamp(known).identifier, known, p, std::log(p * all)});
+    seen.lamps = 1;
+  }
+}
+
+double probabilityOf(const vpSeenLamp &seen, size_t lamp, const vpLampIndex &index)
+{
+  for (const vpSeenLamp::Option &option : seen.options) {
+    if (lamp != vpLampMatch::noLamp && option.identifier == index.lamp(lamp).identifier) {
+      return option.probability;
+    }
+  }
+  return 0;
+}
+
+vpHomogeneousMatrix baseOf(const Place &place, const vpMountFrame &mount)
+{
+  const Complex camera = place.camera - place.heading * Complex(mount.btc.x(), mount.btc.y());
+  vpBasePose pose;
+  pose.wRb << place.heading.real(), -place.heading.imag(), 0, place.heading.imag(), place.heading.real(), 0,
+      0, 0, 1;
+  pose.wtb = {camera.real(), camera.imag(), place.height - mount.btc.z()};
+  return pose.wMb();
+}
+
+std::string shown(const Place &place)
+{
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(2);
+  text << "(" << place.camera.real() << ", " << place.camera.imag() << ")";
+  return text.str();
+}
+
+std::string tooFew(size_t seen)
+{
+  return seen == 0 ? "no lamp of the map seen" : "one lamp of the map seen, two are needed for a position";
+}
+
+std::string whyNot(const std::vector<Place> &places, size_t seen, bool complete)
+{
+  const std::string lamps = std::to_string(seen) + " lamps";
+  if (!complete) {
+    return lamps + " fit too many places of the map to look at them all";
+  }
+  if (places.empty()) {
+    return "no place of the map explains the " + lamps + " seen";
+  }
+  if (places.size() == 1) {
+    return lamps + " fit one place of the map, but not well enough to be sure of it";
+  }
+  return lamps + " fit " + std::to_string(places.size()) + " places of the map about equally well, as " +
+         shown(places[0]) + " and " + shown(places[1]);
+}
+
+//! Where the camera can be, of a base that stands on the floor.
+vpPlaceSearch::Bounds underTheLamps(const vpLampMatcher &settings, const vpMountFrame &mount)
+{
+  vpPlaceSearch::Bounds bounds;
+  bounds.height = settings.baseHeight + mount.btc.z();
+  bounds.heightSigma = settings.baseHeightSigma;
+  return bounds;
+}
+
+//! Where the camera can be, by the last pose of the base.
+vpPlaceSearch::Bounds around(vpPlaceSearch::Bounds bounds, const vpPoseHint &hint, const vpMountFrame &mount)
+{
+  static const double leastReach = 0.05, leastTurn = 0.02; // m, rad
+  bounds.anywhere = false;
+  bounds.turn = std::min(M_PI, std::max(leastTurn, hint.turn));
+  bounds.heading = std::atan2(hint.wMb[1][0], hint.wMb[0][0]);
+  const Complex arm(mount.btc.x(), mount.btc.y());
+  bounds.around = Complex(hint.wMb[0][3], hint.wMb[1][3]) + std::polar(1.0, bounds.heading) * arm;
+  bounds.reach = std::max(leastReach, hint.reach) + std::abs(arm) * std::min(2.0, bounds.turn);
+  return bounds;
+}
+
+bool isPose(const vpPoseHint &hint)
+{
+  const double sum = hint.wMb[0][3] + hint.wMb[1][3] + hint.wMb[0][0] + hint.wMb[1][0];
+  return std::isfinite(sum) && hint.reach >= 0 && hint.turn >= 0;
+}
+
+bool near(const Place &place, const vpPlaceSearch::Bounds &bounds)
+{
+  return std::abs(place.camera - bounds.around) <= bounds.reach &&
+         std::abs(std::arg(place.heading * std::polar(1.0, -bounds.heading))) <= bounds.turn;
+}
+
+//! Of places that explain equally many regions about equally well the one near the last pose, or nullptr.
+const Place *decidedByHint(const vpPlaceSearch &search, const vpPlaceSearch::Bounds &bounds, double minOdds)
+{
+  const Place *nearest = nullptr;
+  size_t most = 0;
+  for (const Place &place : search.places()) {
+    if (place.logEvidence < search.places()[0].logEvidence - std::log(minOdds)) {
+      continue;
+    }
+    most = std::max(most, place.count);
+    if (near(place, bounds)) {
+      if (nearest != nullptr) {
+        return nullptr;
+      }
+      nearest = &place;
+    }
+  }
+  const bool decided =
+      nearest != nullptr && nearest->count == most && !search.model().tooFewOnALine(*nearest);
+  return decided ? nearest : nullptr;
+}
+} // namespace
+
+vpLampMatcher::vpLampMatcher(const vpVlpRig &rig, const vpLampMap &map, Search search)
+    : m_rig(rig), m_index(std::make_shared<vpLampIndex>(map, search == Search::scan))
+{
+}
+
+void vpLampMatcher::check() const
+{
+  expect(mapTolerance > 0, "mapTolerance", mapTolerance, "more than 0 m");
+  expect(tiltTolerance >= 0, "tiltTolerance", tiltTolerance, "0 rad or more");
+  expect(std::isfinite(baseHeight), "baseHeight", baseHeight, "a number of metres");
+  expect(baseHeightSigma > 0, "baseHeightSigma", baseHeightSigma, "more than 0 m");
+  expect(strangers > 0, "strangers", strangers, "more than 0 regions");
+  expect(minOdds >= 1, "minOdds", minOdds, "1 or more");
+  expect(minShare >= 0 && minShare <= 1, "minShare", minShare, "a share between 0 and 1");
+  expect(m_rig.width > 0 && m_rig.height > 0, "the width of the rig's picture", m_rig.width,
+         "pixels, and as many lines");
+}
+
+/*!
+  The regions that may be a lamp of the map, and of each the index of its observation.
+*/
+std::vector<vpSeenLamp> vpLampMatcher::seenLamps(const std::vector<vpLampObservation> &observations,
+                                                 const std::vector<size_t> &usable,
+                                                 std::vector<size_t> &which) const
+{
+  const double tilt = std::max(tiltTolerance, m_rig.rotationSigma.head<2>().maxCoeff());
+  std::vector<vpSeenLamp> seen;
+  for (size_t i : usable) {
+    expect(i < observations.size(), "usable", static_cast<double>(i), "an index of the observations");
+    vpSeenLamp lamp;
+    addOptions(observations[i], *m_index, lamp);
+    if (!lamp.options.empty() && turnUpright(observations[i], m_rig, tilt, lamp)) {
+      seen.push_back(lamp);
+      which.push_back(i);
+    }
+  }
+  return seen;
+}
+
+vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observations,
+                                 const std::vector<size_t> &usable,
+                                 const std::optional<vpPoseHint> &hint) const
+{
+  check();
+  vpLampMatch match;
+  match.lamps.assign(observations.size(), vpLampMatch::noLamp);
+  match.probabilities.assign(observations.size(), 0);
+  std::vector<size_t> which;
+  const std::vector<vpSeenLamp> seen = seenLamps(observations, usable, which);
+  if (seen.size() < 2) {
+    match.refusal = tooFew(seen.size());
+    return match;
+  }
+
+  const vpMountFrame mount(m_rig);
+  const double area = m_rig.width * m_rig.height / (m_rig.camera.get_px() * m_rig.camera.get_py());
+  const vpPlaceSearch::Bounds anywhere = underTheLamps(*this, mount);
+  const auto accept = [&](const vpPlaceSearch &search, const Place &best) {
+    match.outcome = vpLampMatch::Outcome::unique;
+    match.odds = search.odds(best);
+    match.wMb = baseOf(best, mount);
+    const Place place = search.withoutUndecided(best);
+    for (size_t k = 0; k < seen.size(); ++k) {
+      match.lamps[which[k]] = place.lamps[k];
+      match.probabilities[which[k]] = probabilityOf(seen[k], place.lamps[k], *m_index);
+    }
+    return match;
+  };
+
+  // Near the last pose: the answer where it leaves nothing unexplained.
+  const bool hinted = hint && isPose(*hint);
+  const vpPlaceSearch::Bounds nearby = hinted ? around(anywhere, *hint, mount) : anywhere;
+  if (hinted) {
+    vpPlaceSearch local(*this, *m_index, seen, area, nearby);
+    local.run();
+    match.hypotheses += local.hypotheses();
+    match.byHint = local.decided() && local.places()[0].count == seen.size();
+    if (match.byHint) {
+      return accept(local, local.places()[0]);
+    }
+  }
+
+  // The whole map; of places that explain the picture alike the last pose decides.
+  vpPlaceSearch search(*this, *m_index, seen, area, anywhere);
+  const bool complete = search.run();
+  match.hypotheses += search.hypotheses();
+  if (search.decided()) {
+    return accept(search, search.places()[0]);
+  }
+  const Place *place = complete && hinted ? decidedByHint(search, nearby, minOdds) : nullptr;
+  if (place != nullptr) {
+    return accept(search, *place);
+  }
+  const bool none = complete && search.places().empty();
+  match.outcome = none ? vpLampMatch::Outcome::none : vpLampMatch::Outcome::ambiguous;
+  match.odds = complete && !none ? search.odds(search.places()[0]) : 0;
+  match.refusal = whyNot(search.places(), seen.size(), complete);
+  return match;
+}
+
+END_VISP_NAMESPACE
