@@ -1,0 +1,185 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_detection/vpLedIdPlanner.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+#include "vpFrequencyRows.h"
+#include "vpNormalTail.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+// Of error and refusal, where several duties are used.
+constexpr double shareOfFrequency = 0.9, shareOfDuty = 0.1;
+
+void demand(bool good, const char *what, double came, const char *expected)
+{
+  if (!good) {
+    throw vpException(vpException::badValue,
+                      std::string(what) + ": " + vpNumberText(came) + ", expected " + expected);
+  }
+}
+
+//! The largest set of rows that are as far apart as that.
+std::vector<vpModulation> most(const vpFrequencyRows &rows, const vpLedIdPlanner &planner)
+{
+  std::vector<vpModulation> best;
+  for (unsigned int set = 1; set < rows.sets(); ++set) {
+    const bool several = vpFrequencyRows::several(set);
+    std::vector<vpModulation> lamps =
+        rows.filled(set, planner.neededDistance(several ? shareOfFrequency : 1),
+                    planner.neededDistance(several ? shareOfDuty : 1));
+    if (lamps.size() > best.size()) {
+      best = std::move(lamps);
+    }
+  }
+  return best;
+}
+
+struct Placed {
+  const vpModulation *lamp;
+  vpStripeDoubt doubt;
+};
+
+double distanceOf(const Placed &a, const Placed &b)
+{
+  return std::hypot(2 * (a.lamp->frequency - b.lamp->frequency) / (a.doubt.frequency + b.doubt.frequency),
+                    2 * (*a.lamp->duty - *b.lamp->duty) / (a.doubt.duty + b.doubt.duty));
+}
+} // namespace
+
+void vpLedIdPlanner::checkSettings() const
+{
+  const char *const probability = "a probability above 0 and below 0.5";
+  demand(maxError > 0 && maxError < 0.5, "error", maxError, probability);
+  demand(minAcceptance >= 0.5 && minAcceptance < 1, "acceptance", minAcceptance,
+         "a probability from 0.5 to below 1");
+  demand(minConfidence >= 0.5 && minConfidence < 1, "confidence", minConfidence,
+         "a probability from 0.5 to below 1");
+  demand(!duties.empty() && duties.size() <= 8, "duties: number of them",
+         static_cast<double>(duties.size()), "1 to 8");
+  for (const double duty : duties) {
+    demand(duty > 0 && duty < 1, "duties", duty, "numbers between 0 and 1 (both excluded)");
+  }
+  demand(std::isfinite(frequencyStep) && frequencyStep > 0, "frequency step", frequencyStep,
+         "a number of Hz above 0");
+  demand(std::isfinite(prediction.snrDb), "SNR", prediction.snrDb, "a finite number of dB");
+  demand(prediction.margin > 0, "margin", prediction.margin, "a number above 0");
+}
+
+double vpLedIdPlanner::lowest(double lines) const
+{
+  if (!std::isnan(lowestFrequency)) {
+    return lowestFrequency;
+  }
+  return std::max(flicker, leastStripes / (lines * prediction.lineTime()));
+}
+
+double vpLedIdPlanner::highest() const
+{
+  if (!std::isnan(highestFrequency)) {
+    return highestFrequency;
+  }
+  return std::min(prediction.frequencyOfContrast(leastContrast), foldShare * prediction.fold());
+}
+
+double vpLedIdPlanner::neededDistance(double share) const
+{
+  const double forError = 2 * vpNormalTailAt(0.5 * share * maxError);
+  const double t = vpNormalTailAt(0.5 * share * (1 - minAcceptance));
+  const double odds = std::log(minConfidence / (1 - minConfidence));
+  return std::max(forError, t + std::sqrt(t * t + 2 * odds));
+}
+
+size_t vpLedIdPlanner::capacity(double lines, double oscillatorPpm) const
+{
+  checkSettings();
+  return most(vpFrequencyRows(*this, lines, oscillatorPpm), *this).size();
+}
+
+vpLedIdPlan vpLedIdPlanner::largest(double lines, double oscillatorPpm) const
+{
+  checkSettings();
+  return judged(most(vpFrequencyRows(*this, lines, oscillatorPpm), *this), lines, oscillatorPpm);
+}
+
+vpLedIdPlan vpLedIdPlanner::spread(double lines, double oscillatorPpm, size_t count) const
+{
+  checkSettings();
+  const vpFrequencyRows rows(*this, lines, oscillatorPpm);
+  std::vector<vpModulation> best;
+  double widest = 0;
+  for (unsigned int set = 1; set < rows.sets() && count > 0; ++set) {
+    double low = 0, high = rows.widest();
+    std::vector<vpModulation> lamps = rows.filled(set, low, low);
+    const bool enough = lamps.size() >= count;
+    for (int i = 0; i < 40 && enough && high > widest; ++i) { // what cannot be better need not be known
+      const double middle = 0.5 * (low + high);
+      std::vector<vpModulation> wider = rows.filled(set, middle, middle);
+      if (wider.size() >= count) {
+        low = middle;
+        lamps = std::move(wider);
+      } else {
+        high = middle;
+      }
+    }
+    if (enough ? low > widest || best.size() < count : lamps.size() > best.size()) {
+      widest = low;
+      best = std::move(lamps);
+    }
+  }
+  best.resize(std::min(best.size(), count)); // the rows are filled from below: the last ones are at the top
+  return judged(best, lines, oscillatorPpm);
+}
+
+vpLedIdPlan vpLedIdPlanner::judged(std::vector<vpModulation> identifiers, double lines,
+                                   double oscillatorPpm) const
+{
+  vpLedIdPlan plan;
+  plan.identifiers = std::move(identifiers);
+  std::sort(plan.identifiers.begin(), plan.identifiers.end(),
+            [](const vpModulation &a, const vpModulation &b) {
+              return std::make_pair(a.frequency, *a.duty) < std::make_pair(b.frequency, *b.duty);
+            });
+  std::vector<Placed> placed;
+  double largestDoubt = 0;
+  for (const vpModulation &lamp : plan.identifiers) {
+    placed.push_back({&lamp, prediction.doubt(lamp, lines, oscillatorPpm)});
+    largestDoubt = std::max(largestDoubt, placed.back().doubt.frequency);
+  }
+  static const double far = 14; // standard deviations, from where on a neighbour does no harm
+  const double odds = std::log(minConfidence / (1 - minConfidence));
+  const double gates = 4 * vpNormalTail(gate); // of two features, on both sides
+  std::vector<double> error(placed.size(), 0), refused(placed.size(), gates);
+  for (size_t i = 0; i < placed.size(); ++i) {
+    for (size_t j = i + 1; j < placed.size(); ++j) {
+      const double along = (placed[j].lamp->frequency - placed[i].lamp->frequency) / largestDoubt;
+      if (along > std::max(far, std::min(plan.separation, 1e6))) {
+        break;
+      }
+      const double distance = distanceOf(placed[i], placed[j]);
+      plan.separation = std::min(plan.separation, distance);
+      const double wrong = vpNormalTail(0.5 * distance);
+      const double doubtful = distance > 0 ? vpNormalTail(0.5 * distance - odds / distance) : 1;
+      for (const size_t k : {i, j}) {
+        error[k] += wrong;
+        refused[k] += doubtful;
+      }
+    }
+  }
+  if (!placed.empty()) {
+    plan.error = std::min(1.0, *std::max_element(error.begin(), error.end()));
+    plan.acceptance = std::max(0.0, 1 - *std::max_element(refused.begin(), refused.end()));
+  }
+  return plan;
+}
+
+END_VISP_NAMESPACE
