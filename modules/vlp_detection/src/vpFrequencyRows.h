@@ -12,41 +12,41 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Lamps in rows of one duty each, along the frequencies. Where two duties are too near for the doubt at some
-  frequency, as where an exposure is about as long as a pulse, the one farther from 0.5 has no lamps there.
+  Lamps in rows of one duty each, along the frequencies. Each lamp takes an interval of frequencies about its own,
+  as wide as its doubt; lamps are far enough apart where intervals are disjoint. To take that interval next that
+  ends first gives the most of them (interval scheduling: Kleinberg and Tardos, Algorithm Design, 4.1).
 */
 class vpFrequencyRows
 {
 public:
   vpFrequencyRows(const vpLedIdPlanner &planner, double lines, double oscillatorPpm);
 
-  //! The rows that a set of duties may take: of duty i, counted from that nearest to 0.5, where bit i is set.
+  //! The rows that a set of duties may take: of duty i where bit i is set.
   unsigned int sets() const { return 1u << m_rows.size(); }
   static bool several(unsigned int set) { return (set & (set - 1)) != 0; }
 
-  //! Each row from the lowest frequency upwards, neighbours so many standard deviations apart.
+  /*!
+    As many lamps as there is room for, neighbours of a row so many standard deviations of frequency apart, and
+    those of different rows so many of duty: a lamp whose duty is less certain than that is left out.
+  */
   std::vector<vpModulation> filled(unsigned int set, double alongFrequency, double acrossDuty) const;
 
   //! A distance at which no row holds more than one lamp.
   double widest() const;
 
 private:
+  struct Candidate {
+    double frequency, frequencyDoubt, dutyDoubt;
+  };
   struct Row {
     double duty;
-    std::vector<double> dutyDoubt; // largest in each cell
+    std::vector<Candidate> candidates; // ascending in frequency
   };
-  double largestDutyDoubt(double duty, double low, double high) const;
-  double next(const Row &row, double frequency, double distance) const;
-  std::vector<std::vector<bool>> open(unsigned int set, double acrossDuty) const;
-  double doubt(const Row &row, double frequency) const;
-  double end(int cell) const { return m_lowest + (m_highest - m_lowest) * cell / cells; }
+  Row rowOf(const vpLedIdPlanner &planner, double duty, double lines, double oscillatorPpm) const;
+  double roomAcross(unsigned int set, size_t row) const;
 
-  static constexpr int cells = 60; // of frequency, within which doubt of the duty changes little
-
-  const vpLedIdPlanner &m_planner;
-  double m_lines, m_oscillatorPpm;
   double m_lowest, m_highest; // Hz
-  std::vector<Row> m_rows;    // that nearest to 0.5 first
+  std::vector<Row> m_rows;
 };
 
 //! A pwm lamp.

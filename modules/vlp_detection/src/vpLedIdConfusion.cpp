@@ -94,7 +94,7 @@ std::vector<vpLedIdPair> vpLedIdPlanner::confusion(const vpLampMap &map, double 
       vpModulation chips;
       chips.kind = vpModulation::Kind::pwm;
       chips.frequency = 0.5 * sent.chipRate;
-      seen.doubt.frequency = prediction.frequencyDoubt(chips, lines, identifier.oscillatorPpm) * 2 /
+      seen.doubt.frequency = prediction.doubt(chips, lines, identifier.oscillatorPpm).frequency * 2 /
                              static_cast<double>(seen.chips.size());
       seen.chipDistance = 2 * prediction.contrast(chips.frequency) *
                           std::sqrt(lines / static_cast<double>(seen.chips.size())) /

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -55,6 +57,45 @@ struct AveragedPulse {
     byDuty = (byDutyAt[1] - byDutyAt[0]) / width;
   }
 };
+
+constexpr int phases = 16; // of the lamp against the lines, tried one after the other
+
+//! By how much an edge of a pulse may be earlier (negative) or later, s, and the lines look the same.
+struct Interval {
+  double low, high;
+};
+
+//! Where in a period the light goes on or off, in periods.
+std::vector<double> edgesOf(const vpModulation &modulation)
+{
+  const double duty = modulation.duty.value_or(0.5);
+  if (modulation.kind == vpModulation::Kind::twoPulse) {
+    return {0, 0.5 * duty, modulation.phaseDifference, modulation.phaseDifference + 0.5 * duty};
+  }
+  return {0, duty};
+}
+
+/*!
+  Of each edge that the lines see, one a period: as far as the gap between two exposures where it lies in one,
+  \e seen to both sides where an exposure shows it. \param middle Of each line's exposure, n of them, s.
+*/
+std::vector<Interval> intervalsOf(double phase, double period, const double *middle, size_t n, double exposure,
+                                  double seen)
+{
+  std::vector<Interval> intervals;
+  size_t line = 0;
+  for (double edge = middle[0] - 0.5 * exposure + (phase - std::floor(phase)) * period;
+       edge < middle[n - 1] + 0.5 * exposure; edge += period) {
+    while (line + 1 < n && middle[line] + 0.5 * exposure < edge) {
+      ++line; // the first exposure that has not ended yet
+    }
+    const double start = middle[line] - 0.5 * exposure;
+    const bool hidden = edge < start;
+    intervals.push_back(
+        {-seen - (hidden ? edge - (middle[line - 1] + 0.5 * exposure) : 0), seen + (hidden ? start - edge : 0)});
+  }
+  return intervals;
+}
 
 enum Parameter { ofFrequency, ofPhase, ofDuty, ofExposure, ofDifference, ofOffset, ofAmplitude, parameters };
 using Vector = Eigen::Matrix<double, parameters, 1>;
@@ -160,37 +201,67 @@ double vpStripePrediction::frequencySigma(const vpModulation &modulation, double
   return margin * byModel * sinusoidBound(lines, amplitude);
 }
 
-/*!
-  Standard deviation of the pulses' length by edges that hide, periods: of one edge, in a gap of length g for
-  the share g / T of all edges, where it may lie anywhere: g sqrt(g / T) / sqrt(12); of 2 f T N edges, half of
-  them rising.
-*/
-double vpStripePrediction::hiddenEdges(double frequency, double lines) const
+//! The delivered lines that lamp number \e trial, anywhere in the picture, covers: the first one, and how many.
+std::pair<size_t, size_t> vpStripePrediction::linesUnder(double lines, int trial) const
 {
-  const double gap = std::max(0.0, m_lineTime - m_exposure);
-  const double stripes = std::max(1.0, frequency * m_lineTime * lines);
-  return gap * std::sqrt(gap / m_lineTime / 12) * frequency * std::sqrt(2 / stripes);
+  static const size_t stride = 7; // steps of a nearest-neighbour resize repeat after 25 lines or so
+  const size_t n = std::min(m_middle.size(), static_cast<size_t>(std::max(2.0, std::floor(lines))));
+  return {m_middle.size() == n ? 0 : stride * static_cast<size_t>(trial) % (m_middle.size() - n + 1), n};
 }
 
-void vpStripePrediction::shapeSigma(const vpModulation &modulation, double lines, double &dutySigma,
-                                    double &phaseSigma) const
+vpStripeDoubt vpStripePrediction::hiddenEdges(const vpModulation &modulation, double lines) const
 {
-  static const int phases = 16; // averaged over
-  const size_t n = std::min(m_middle.size(), static_cast<size_t>(std::max(1.0, std::floor(lines))));
-  const size_t first = (m_middle.size() - n) / 2;
-  const double middle = 0.5 * (m_middle[first] + m_middle[first + n - 1]);
+  vpStripeDoubt worst;
+  // Short enough that the stripes hardly tell: it leaves gaps of its own.
+  const double exposure = m_exposure * (1 - 0.25 * exposureTolerance);
+  if (exposure >= m_lineTime) {
+    return worst;
+  }
+  const double seen = 0.25 * m_exposure * lineNoise(modulation.duty.value_or(0.5)); // s, half a standard deviation
+  for (int trial = 0; trial < phases; ++trial) {
+    const auto [first, n] = linesUnder(lines, trial);
+    double shorter = -std::numeric_limits<double>::infinity(), longer = -shorter; // change of the period, s
+    double slack = 0;                                                             // s^2
+    for (const double edge : edgesOf(modulation)) {
+      const std::vector<Interval> intervals =
+          intervalsOf(edge + (trial + 0.5) / phases, 1 / modulation.frequency, &m_middle[first], n, exposure, seen);
+      Interval all{-1 / modulation.frequency, 1 / modulation.frequency};
+      const size_t count = intervals.size(), third = (count + 2) / 3; // pairs far apart bind the most
+      for (size_t k = 0; k < count; ++k) {
+        all.low = std::max(all.low, intervals[k].low);
+        all.high = std::min(all.high, intervals[k].high);
+        for (size_t l = std::max(k + 1, count - third); k < third && l < count; ++l) {
+          const double periods = static_cast<double>(l - k);
+          longer = std::min(longer, (intervals[l].high - intervals[k].low) / periods);
+          shorter = std::max(shorter, (intervals[l].low - intervals[k].high) / periods);
+        }
+      }
+      slack += std::pow(std::max(0.0, all.high - all.low), 2);
+    }
+    const double f = modulation.frequency;
+    worst.frequency = std::max(worst.frequency, f * f * std::max(0.0, longer - shorter));
+    worst.duty = std::max(worst.duty, f * std::sqrt(slack / 12));
+  }
+  worst.phaseDifference = worst.duty;
+  return worst;
+}
+
+vpStripeDoubt vpStripePrediction::shapeSigma(const vpModulation &modulation, double lines) const
+{
+  const size_t n = std::min(m_middle.size(), static_cast<size_t>(std::max(2.0, std::floor(lines))));
+  const double middle = 0.5 * (m_middle[0] + m_middle[n - 1]);
   const double scale = m_lineTime * static_cast<double>(n);
   const double averaging = std::max(m_exposure, 1e-3 / modulation.frequency);
   const double white = 0.5 * std::pow(10, -snrDb / 20); // of light, lit 1
 
   Matrix information = Matrix::Zero();
   Vector derivative;
-  for (int j = 0; j < phases; ++j) {
-    for (size_t i = first; i < first + n; ++i) {
+  for (int j = 0; j < phases; j += 2) {
+    for (size_t i = 0; i < n; ++i) {
       const double light =
-          lightAt(modulation, m_middle[i] - middle, (j + 0.5) / phases, averaging, scale, derivative);
+          lightAt(modulation, m_middle[i] - middle, (j + 1.) / phases, averaging, scale, derivative);
       const double variance = white * white + modelError * modelError * light * light;
-      information += derivative * derivative.transpose() / (phases * variance);
+      information += derivative * derivative.transpose() / (0.5 * phases * variance);
     }
   }
   // What is known beforehand, as vpStripeAnalyzer has it: of the duty no more than that it is one.
@@ -201,26 +272,32 @@ void vpStripePrediction::shapeSigma(const vpModulation &modulation, double lines
   known(ofDifference) = anyDifference;
   information.diagonal() += known.cwiseProduct(known).cwiseInverse();
   const Matrix covariance = information.inverse();
-  const double hidden = hiddenEdges(modulation.frequency, lines);
-  dutySigma = margin * std::hypot(std::sqrt(covariance(ofDuty, ofDuty)), hidden);
-  phaseSigma = margin * std::hypot(std::sqrt(covariance(ofDifference, ofDifference)), hidden);
-}
-
-double vpStripePrediction::frequencyDoubt(const vpModulation &modulation, double lines,
-                                          double oscillatorPpm) const
-{
-  const double f = modulation.frequency;
-  return std::hypot(frequencySigma(modulation, lines), m_relativeRowTime * f, 1e-6 * oscillatorPpm * f);
+  vpStripeDoubt sigma;
+  sigma.duty = margin * std::sqrt(covariance(ofDuty, ofDuty));
+  sigma.phaseDifference = margin * std::sqrt(covariance(ofDifference, ofDifference));
+  // Pulse and exposure are both boxes, and which is which the stripes do not say: the shorter one is the
+  // exposure, as a rule.
+  const double d = modulation.duty.value_or(0.5), shortest = std::min(d, 1 - d);
+  sigma.duty = std::hypot(sigma.duty, std::max(0.0, modulation.frequency * m_exposure - shortest));
+  return sigma;
 }
 
 vpStripeDoubt vpStripePrediction::doubt(const vpModulation &modulation, double lines,
                                         double oscillatorPpm) const
 {
+  return together(modulation, lines, oscillatorPpm, shapeSigma(modulation, lines));
+}
+
+vpStripeDoubt vpStripePrediction::together(const vpModulation &modulation, double lines, double oscillatorPpm,
+                                           const vpStripeDoubt &shape) const
+{
+  const double f = modulation.frequency;
+  const vpStripeDoubt hidden = hiddenEdges(modulation, lines);
   vpStripeDoubt doubt;
-  doubt.frequency = frequencyDoubt(modulation, lines, oscillatorPpm);
-  shapeSigma(modulation, lines, doubt.duty, doubt.phaseDifference);
-  doubt.duty = std::hypot(doubt.duty, dutyError);
-  doubt.phaseDifference = std::hypot(doubt.phaseDifference, phaseError);
+  doubt.frequency = std::hypot(std::hypot(frequencySigma(modulation, lines), hidden.frequency),
+                               m_relativeRowTime * f, 1e-6 * oscillatorPpm * f);
+  doubt.duty = std::hypot(shape.duty, hidden.duty, dutyError);
+  doubt.phaseDifference = std::hypot(shape.phaseDifference, hidden.phaseDifference, phaseError);
   return doubt;
 }
 

@@ -98,7 +98,7 @@ public:
   double flicker = 500; // Hz, above which no eye sees a lamp flicker even where gaze or lamp moves
   double leastContrast = 0.2;
   double foldShare = 0.9;
-  double frequencyStep = 0.1; // Hz: frequencies are multiples of this
+  double frequencyStep = 1;   // Hz: frequencies are multiples of this
 
   //! \throw vpException (badValue) as vpStripePrediction.
   explicit vpLedIdPlanner(const vpVlpRig &rig) : prediction(rig), m_cameraHeight(rig.bMc[2][3]) {}

@@ -5,6 +5,7 @@
 #ifndef vpStripePrediction_h
 #define vpStripePrediction_h
 
+#include <utility>
 #include <vector>
 
 #include <visp3/vlp_core/vpModulation.h>
@@ -77,23 +78,34 @@ public:
   //! Hz, standard deviation of a pwm's or twoPulse's frequency by the stripes alone, margin included.
   double frequencySigma(const vpModulation &modulation, double lines) const;
 
-  //! Hz: the same with the doubt of row time and oscillator (standard deviation in 1e-6 of the frequency).
-  double frequencyDoubt(const vpModulation &modulation, double lines, double oscillatorPpm) const;
+  /*!
+    What edges add that hide where lines leave gaps between their exposures: as a nearest-neighbour resize does,
+    or a short exposure. An edge in a gap may lie anywhere there, and of a frequency that is nearly a simple
+    fraction of the rate of lines all edges hide alike. Two edges of one kind, l periods apart, allow the period
+    to change by as much as both have room, divided by l; the narrowest of these bounds is taken for a uniform
+    distribution, and of all phases against the lines the worst. In Hz and periods.
+  */
+  vpStripeDoubt hiddenEdges(const vpModulation &modulation, double lines) const;
 
   /*!
-    frequencyDoubt(), and that of duty and phase difference with the recogniser's own errors. The stripes' part
-    of these comes from the Fisher information of frequency, phase, duty, exposure
-    (known to `exposureTolerance` only), phase difference, offset and amplitude together, averaged over the
-    phase; and an edge that hides between two exposures is known to their gap only.
+    Standard deviations of duty and phase difference by the stripes, edges all seen: from the Fisher information
+    of frequency, phase, duty, exposure (known to `exposureTolerance` only), phase difference, offset and
+    amplitude together, averaged over the phase. A pulse or gap shorter than the exposure is taken for it.
   */
+  vpStripeDoubt shapeSigma(const vpModulation &modulation, double lines) const;
+
+  //! All of it together, with row time, oscillator (standard deviation in 1e-6 of the frequency) and the
+  //! recogniser's own errors.
   vpStripeDoubt doubt(const vpModulation &modulation, double lines, double oscillatorPpm) const;
+  //! The same where \e shape is known, which changes slowly with frequency and takes longest.
+  vpStripeDoubt together(const vpModulation &modulation, double lines, double oscillatorPpm,
+                         const vpStripeDoubt &shape) const;
 
   //! Root mean square of what a line of the lamp may be off by, as a share of A: noise, and the model's error.
   double lineNoise(double duty) const;
 
 private:
-  double hiddenEdges(double frequency, double lines) const;
-  void shapeSigma(const vpModulation &modulation, double lines, double &duty, double &phaseDifference) const;
+  std::pair<size_t, size_t> linesUnder(double lines, int trial) const;
 
   std::vector<double> m_middle; // s, of each delivered line's exposure, ascending
   double m_lineTime = 0;
