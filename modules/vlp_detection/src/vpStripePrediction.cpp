@@ -213,11 +213,13 @@ vpStripeDoubt vpStripePrediction::hiddenEdges(const vpModulation &modulation, do
 {
   vpStripeDoubt worst;
   // Short enough that the stripes hardly tell: it leaves gaps of its own.
-  const double exposure = m_exposure * (1 - 0.25 * exposureTolerance);
+  const double exposure = m_exposure * (1 - 0.5 * exposureTolerance);
   if (exposure >= m_lineTime) {
     return worst;
   }
-  const double seen = 0.25 * m_exposure * lineNoise(modulation.duty.value_or(0.5)); // s, half a standard deviation
+  // Walls of a gap are no sharper than that, as vpStripeAnalyzer has it.
+  static const double untrue = 0.03;
+  const double seen = untrue * std::max(0.0, m_lineTime - m_exposure);
   for (int trial = 0; trial < phases; ++trial) {
     const auto [first, n] = linesUnder(lines, trial);
     double shorter = -std::numeric_limits<double>::infinity(), longer = -shorter; // change of the period, s
