@@ -10,16 +10,15 @@
 
 BEGIN_VISP_NAMESPACE
 
-vpFrequencyRows::vpFrequencyRows(const vpLedIdPlanner &planner, double lines, double oscillatorPpm)
+vpFrequencyRows::vpFrequencyRows(const vpLedIdPlanner &planner, double lines)
     : m_lowest(planner.lowest(lines)), m_highest(planner.highest())
 {
   for (const double duty : planner.duties) {
-    m_rows.push_back(rowOf(planner, duty, lines, oscillatorPpm));
+    m_rows.push_back(rowOf(planner, duty, lines));
   }
 }
 
-vpFrequencyRows::Row vpFrequencyRows::rowOf(const vpLedIdPlanner &planner, double duty, double lines,
-                                            double oscillatorPpm) const
+vpFrequencyRows::Row vpFrequencyRows::rowOf(const vpLedIdPlanner &planner, double duty, double lines) const
 {
   Row row{duty, {}};
   const double highest = std::min(m_highest, std::min(duty, 1 - duty) / planner.prediction.exposure());
@@ -27,10 +26,15 @@ vpFrequencyRows::Row vpFrequencyRows::rowOf(const vpLedIdPlanner &planner, doubl
   static const double rounding = 1e-9;
   for (double n = std::ceil(m_lowest / step - rounding); n * step <= highest * (1 + rounding); ++n) {
     const vpStripeDoubt doubt =
-        planner.prediction.doubt(vpPwmLamp(n * step, duty), lines, oscillatorPpm);
+        planner.prediction.doubt(vpPwmLamp(n * step, duty), lines, 0);
     row.candidates.push_back({n * step, doubt.frequency, doubt.duty});
   }
   return row;
+}
+
+double vpFrequencyRows::doubtOf(const Candidate &candidate) const
+{
+  return std::hypot(candidate.frequencyDoubt, 1e-6 * m_oscillatorPpm * candidate.frequency);
 }
 
 double vpFrequencyRows::widest() const
@@ -38,7 +42,7 @@ double vpFrequencyRows::widest() const
   double least = std::numeric_limits<double>::infinity();
   for (const Row &row : m_rows) {
     for (const Candidate &candidate : row.candidates) {
-      least = std::min(least, candidate.frequencyDoubt);
+      least = std::min(least, doubtOf(candidate));
     }
   }
   return std::max(0.0, m_highest - m_lowest) / least + 1;
@@ -68,13 +72,13 @@ std::vector<vpModulation> vpFrequencyRows::filled(unsigned int set, double along
     std::vector<std::pair<double, const Candidate *>> byEnd;
     for (const Candidate &candidate : m_rows[i].candidates) {
       if (candidate.dutyDoubt * acrossDuty <= room) {
-        byEnd.emplace_back(candidate.frequency + 0.5 * alongFrequency * candidate.frequencyDoubt, &candidate);
+        byEnd.emplace_back(candidate.frequency + 0.5 * alongFrequency * doubtOf(candidate), &candidate);
       }
     }
     std::sort(byEnd.begin(), byEnd.end());
     double taken = -std::numeric_limits<double>::infinity();
     for (const auto &[end, candidate] : byEnd) {
-      if (candidate->frequency - 0.5 * alongFrequency * candidate->frequencyDoubt >= taken) {
+      if (candidate->frequency - 0.5 * alongFrequency * doubtOf(*candidate) >= taken) {
         lamps.push_back(vpPwmLamp(candidate->frequency, m_rows[i].duty));
         taken = end;
       }

@@ -19,7 +19,9 @@ BEGIN_VISP_NAMESPACE
 class vpFrequencyRows
 {
 public:
-  vpFrequencyRows(const vpLedIdPlanner &planner, double lines, double oscillatorPpm);
+  //! For lamps of perfect clocks until setOscillator() says otherwise.
+  vpFrequencyRows(const vpLedIdPlanner &planner, double lines);
+  void setOscillator(double ppm) { m_oscillatorPpm = ppm; }
 
   //! The rows that a set of duties may take: of duty i where bit i is set.
   unsigned int sets() const { return 1u << m_rows.size(); }
@@ -36,16 +38,18 @@ public:
 
 private:
   struct Candidate {
-    double frequency, frequencyDoubt, dutyDoubt;
+    double frequency, frequencyDoubt, dutyDoubt; // clocks perfect
   };
   struct Row {
     double duty;
     std::vector<Candidate> candidates; // ascending in frequency
   };
-  Row rowOf(const vpLedIdPlanner &planner, double duty, double lines, double oscillatorPpm) const;
+  Row rowOf(const vpLedIdPlanner &planner, double duty, double lines) const;
+  double doubtOf(const Candidate &candidate) const;
   double roomAcross(unsigned int set, size_t row) const;
 
   double m_lowest, m_highest; // Hz
+  double m_oscillatorPpm = 0;
   std::vector<Row> m_rows;
 };
 

@@ -99,22 +99,37 @@ double vpLedIdPlanner::neededDistance(double share) const
   return std::max(forError, t + std::sqrt(t * t + 2 * odds));
 }
 
-size_t vpLedIdPlanner::capacity(double lines, double oscillatorPpm) const
+std::vector<size_t> vpLedIdPlanner::capacities(double lines, const std::vector<double> &oscillatorsPpm) const
 {
   checkSettings();
-  return most(vpFrequencyRows(*this, lines, oscillatorPpm), *this).size();
+  vpFrequencyRows rows(*this, lines);
+  std::vector<size_t> capacities;
+  for (const double ppm : oscillatorsPpm) {
+    rows.setOscillator(ppm);
+    capacities.push_back(most(rows, *this).size());
+  }
+  return capacities;
+}
+
+size_t vpLedIdPlanner::bins(double lines) const
+{
+  const double range = highest() - lowest(lines);
+  return range < 0 ? 0 : static_cast<size_t>(range * lines * prediction.lineTime()) + 1;
 }
 
 vpLedIdPlan vpLedIdPlanner::largest(double lines, double oscillatorPpm) const
 {
   checkSettings();
-  return judged(most(vpFrequencyRows(*this, lines, oscillatorPpm), *this), lines, oscillatorPpm);
+  vpFrequencyRows rows(*this, lines);
+  rows.setOscillator(oscillatorPpm);
+  return judged(most(rows, *this), lines, oscillatorPpm);
 }
 
 vpLedIdPlan vpLedIdPlanner::spread(double lines, double oscillatorPpm, size_t count) const
 {
   checkSettings();
-  const vpFrequencyRows rows(*this, lines, oscillatorPpm);
+  vpFrequencyRows rows(*this, lines);
+  rows.setOscillator(oscillatorPpm);
   std::vector<vpModulation> best;
   double widest = 0;
   for (unsigned int set = 1; set < rows.sets() && count > 0; ++set) {

@@ -78,8 +78,9 @@ struct VISP_EXPORT vpLedIdReuse {
   two neighbours (4 standard deviations each) may overlap: between them the odds decide, not the gates.
 
   Where several duties are used, neighbours in frequency get nine tenths of the error and neighbours in duty one
-  tenth: frequencies are what there is to save. Lamps of one duty are placed from the lowest frequency upwards,
-  each as near to the one before as allowed; no other way places more, since doubt grows slower than frequency.
+  tenth: frequencies are what there is to save. A lamp takes an interval of frequencies about its own, d times as
+  wide as its doubt; lamps of one duty are apart where their intervals are disjoint, and taking that interval
+  next that ends first gives the most of them. So frequencies at which edges hide are passed over by themselves.
 */
 class VISP_EXPORT vpLedIdPlanner
 {
@@ -117,12 +118,16 @@ public:
   */
   vpLedIdPlan largest(double lines, double oscillatorPpm) const;
 
-  //! How many these are, without working out how well they stay apart.
-  size_t capacity(double lines, double oscillatorPpm) const;
+  //! How many these are, for clocks of several kinds.
+  std::vector<size_t> capacities(double lines, const std::vector<double> &oscillatorsPpm) const;
+
+  //! How many frequencies a count of stripes or the bins of an FFT tell apart in the same range: 1 / (N T_r)
+  //! from one to the next. What others have (Xie, Guan et al. 2018), for comparison.
+  size_t bins(double lines) const;
 
   /*!
     So many identifiers, as far apart as they can be: the least distance is as large as rows of the duties, or
-    of some of them, allow. More than capacity() of them are nearer to each other than asked for, and fewer than
+    of some of them, allow. More than largest() has are nearer to each other than asked for, and fewer than
     asked for come back where even the steps of frequency do not hold them.
   */
   vpLedIdPlan spread(double lines, double oscillatorPpm, size_t count) const;
