@@ -23,10 +23,17 @@ vpFrequencyRows::Row vpFrequencyRows::rowOf(const vpLedIdPlanner &planner, doubl
   Row row{duty, {}};
   const double highest = std::min(m_highest, std::min(duty, 1 - duty) / planner.prediction.exposure());
   const double step = planner.frequencyStep;
-  static const double rounding = 1e-9;
+  static const double rounding = 1e-9, cell = 5; // Hz, within which the shape's doubt changes little
+  vpStripeDoubt below = planner.prediction.shapeSigma(vpPwmLamp(m_lowest, duty), lines), above = below;
+  double end = m_lowest; // of the cell, at which above is
   for (double n = std::ceil(m_lowest / step - rounding); n * step <= highest * (1 + rounding); ++n) {
-    const vpStripeDoubt doubt =
-        planner.prediction.doubt(vpPwmLamp(n * step, duty), lines, 0);
+    while (end < n * step) {
+      end = std::max(end + cell, n * step);
+      below = above;
+      above = planner.prediction.shapeSigma(vpPwmLamp(end, duty), lines);
+    }
+    const vpStripeDoubt doubt = planner.prediction.together(vpPwmLamp(n * step, duty), lines, 0,
+                                                            below.duty > above.duty ? below : above);
     row.candidates.push_back({n * step, doubt.frequency, doubt.duty});
   }
   return row;

@@ -97,6 +97,31 @@ std::vector<Interval> intervalsOf(double phase, double period, const double *mid
   return intervals;
 }
 
+//! What the edges of a lamp allow.
+struct Room {
+  double shorter = -std::numeric_limits<double>::infinity(); // change of the period, s
+  double longer = std::numeric_limits<double>::infinity();
+  double shifts = 0; // sum of the squares of what all edges of one kind may be shifted by, s^2
+
+  //! By edges of one kind. \param enough Of longer - shorter, s: it need not be known better.
+  void narrow(const std::vector<Interval> &edges, double enough, double period)
+  {
+    Interval all{-period, period};
+    for (const Interval &edge : edges) {
+      all = {std::max(all.low, edge.low), std::min(all.high, edge.high)};
+    }
+    shifts += std::pow(std::max(0.0, all.high - all.low), 2);
+    const size_t count = edges.size(), third = (count + 2) / 3; // pairs far apart bind the most
+    for (size_t k = 0; k < third && longer - shorter > enough; ++k) {
+      for (size_t l = std::max(k + 1, count - third); l < count; ++l) {
+        const double periods = static_cast<double>(l - k);
+        longer = std::min(longer, (edges[l].high - edges[k].low) / periods);
+        shorter = std::max(shorter, (edges[l].low - edges[k].high) / periods);
+      }
+    }
+  }
+};
+
 enum Parameter { ofFrequency, ofPhase, ofDuty, ofExposure, ofDifference, ofOffset, ofAmplitude, parameters };
 using Vector = Eigen::Matrix<double, parameters, 1>;
 using Matrix = Eigen::Matrix<double, parameters, parameters>;
@@ -220,29 +245,18 @@ vpStripeDoubt vpStripePrediction::hiddenEdges(const vpModulation &modulation, do
   // Walls of a gap are no sharper than that, as vpStripeAnalyzer has it.
   static const double untrue = 0.03;
   const double seen = untrue * std::max(0.0, m_lineTime - m_exposure);
+  const double f = modulation.frequency;
+  static const double negligible = 0.1; // share of the doubt that there is anyhow
+  worst.frequency = negligible * frequencySigma(modulation, lines);
   for (int trial = 0; trial < phases; ++trial) {
     const auto [first, n] = linesUnder(lines, trial);
-    double shorter = -std::numeric_limits<double>::infinity(), longer = -shorter; // change of the period, s
-    double slack = 0;                                                             // s^2
+    Room room;
     for (const double edge : edgesOf(modulation)) {
-      const std::vector<Interval> intervals =
-          intervalsOf(edge + (trial + 0.5) / phases, 1 / modulation.frequency, &m_middle[first], n, exposure, seen);
-      Interval all{-1 / modulation.frequency, 1 / modulation.frequency};
-      const size_t count = intervals.size(), third = (count + 2) / 3; // pairs far apart bind the most
-      for (size_t k = 0; k < count; ++k) {
-        all.low = std::max(all.low, intervals[k].low);
-        all.high = std::min(all.high, intervals[k].high);
-        for (size_t l = std::max(k + 1, count - third); k < third && l < count; ++l) {
-          const double periods = static_cast<double>(l - k);
-          longer = std::min(longer, (intervals[l].high - intervals[k].low) / periods);
-          shorter = std::max(shorter, (intervals[l].low - intervals[k].high) / periods);
-        }
-      }
-      slack += std::pow(std::max(0.0, all.high - all.low), 2);
+      room.narrow(intervalsOf(edge + (trial + 0.5) / phases, 1 / f, &m_middle[first], n, exposure, seen),
+                  worst.frequency / (f * f), 1 / f);
     }
-    const double f = modulation.frequency;
-    worst.frequency = std::max(worst.frequency, f * f * std::max(0.0, longer - shorter));
-    worst.duty = std::max(worst.duty, f * std::sqrt(slack / 12));
+    worst.frequency = std::max(worst.frequency, f * f * (room.longer - room.shorter));
+    worst.duty = std::max(worst.duty, f * std::sqrt(room.shifts / 12));
   }
   worst.phaseDifference = worst.duty;
   return worst;
