@@ -12,9 +12,8 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Lamps in rows of one duty each, along the frequencies. Each lamp takes an interval of frequencies about its own,
-  as wide as its doubt; lamps are far enough apart where intervals are disjoint. To take that interval next that
-  ends first gives the most of them (interval scheduling: Kleinberg and Tardos, Algorithm Design, 4.1).
+  Lamps in rows of one duty each, along the frequencies, as many as there is room for: frequencies of much doubt,
+  where edges hide, are passed over.
 */
 class vpFrequencyRows
 {
@@ -46,6 +45,7 @@ private:
   };
   Row rowOf(const vpLedIdPlanner &planner, double duty, double lines) const;
   double doubtOf(const Candidate &candidate) const;
+  std::vector<double> longestChain(const std::vector<Candidate> &candidates, double distance) const;
   double roomAcross(unsigned int set, size_t row) const;
 
   double m_lowest, m_highest; // Hz

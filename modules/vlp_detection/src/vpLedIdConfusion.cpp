@@ -29,7 +29,7 @@ struct Seen {
 
 double squaredDistance(double difference, double sigma, double otherSigma)
 {
-  const double distance = 2 * difference / (sigma + otherSigma);
+  const double distance = difference / std::max(sigma, otherSigma);
   return distance * distance;
 }
 

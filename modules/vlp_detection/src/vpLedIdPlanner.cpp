@@ -17,9 +17,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-// Of error and refusal, where several duties are used.
-constexpr double shareOfFrequency = 0.9, shareOfDuty = 0.1;
-
 void demand(bool good, const char *what, double came, const char *expected)
 {
   if (!good) {
@@ -28,20 +25,38 @@ void demand(bool good, const char *what, double came, const char *expected)
   }
 }
 
-//! The largest set of rows that are as far apart as that.
-std::vector<vpModulation> most(const vpFrequencyRows &rows, const vpLedIdPlanner &planner)
+//! The largest set of rows. \param ofDuty Share of error and refusal that neighbours in duty may cause.
+std::vector<vpModulation> most(const vpFrequencyRows &rows, const vpLedIdPlanner &planner, double ofDuty)
 {
   std::vector<vpModulation> best;
   for (unsigned int set = 1; set < rows.sets(); ++set) {
-    const bool several = vpFrequencyRows::several(set);
+    const double share = vpFrequencyRows::several(set) ? ofDuty : 0;
     std::vector<vpModulation> lamps =
-        rows.filled(set, planner.neededDistance(several ? shareOfFrequency : 1),
-                    planner.neededDistance(several ? shareOfDuty : 1));
+        rows.filled(set, planner.neededDistance(1 - share), planner.neededDistance(share > 0 ? share : 1));
     if (lamps.size() > best.size()) {
       best = std::move(lamps);
     }
   }
   return best;
+}
+
+bool isGood(const vpLedIdPlan &plan, const vpLedIdPlanner &planner)
+{
+  return plan.error <= planner.maxError && plan.acceptance >= planner.minAcceptance;
+}
+
+//! The same, judged. A lamp of much doubt has many neighbours in duty, so the first share may be too large.
+vpLedIdPlan mostGood(vpFrequencyRows &rows, const vpLedIdPlanner &planner, double lines, double oscillatorPpm)
+{
+  rows.setOscillator(oscillatorPpm);
+  vpLedIdPlan plan;
+  for (double ofDuty = 0.1; ofDuty > 1e-4; ofDuty *= 0.3) {
+    plan = planner.judged(most(rows, planner, ofDuty), lines, oscillatorPpm);
+    if (isGood(plan, planner)) {
+      break;
+    }
+  }
+  return plan;
 }
 
 struct Placed {
@@ -51,8 +66,9 @@ struct Placed {
 
 double distanceOf(const Placed &a, const Placed &b)
 {
-  return std::hypot(2 * (a.lamp->frequency - b.lamp->frequency) / (a.doubt.frequency + b.doubt.frequency),
-                    2 * (*a.lamp->duty - *b.lamp->duty) / (a.doubt.duty + b.doubt.duty));
+  return std::hypot(
+      (a.lamp->frequency - b.lamp->frequency) / std::max(a.doubt.frequency, b.doubt.frequency),
+      (*a.lamp->duty - *b.lamp->duty) / std::max(a.doubt.duty, b.doubt.duty));
 }
 } // namespace
 
@@ -105,8 +121,7 @@ std::vector<size_t> vpLedIdPlanner::capacities(double lines, const std::vector<d
   vpFrequencyRows rows(*this, lines);
   std::vector<size_t> capacities;
   for (const double ppm : oscillatorsPpm) {
-    rows.setOscillator(ppm);
-    capacities.push_back(most(rows, *this).size());
+    capacities.push_back(mostGood(rows, *this, lines, ppm).identifiers.size());
   }
   return capacities;
 }
@@ -121,8 +136,7 @@ vpLedIdPlan vpLedIdPlanner::largest(double lines, double oscillatorPpm) const
 {
   checkSettings();
   vpFrequencyRows rows(*this, lines);
-  rows.setOscillator(oscillatorPpm);
-  return judged(most(rows, *this), lines, oscillatorPpm);
+  return mostGood(rows, *this, lines, oscillatorPpm);
 }
 
 vpLedIdPlan vpLedIdPlanner::spread(double lines, double oscillatorPpm, size_t count) const
@@ -151,8 +165,16 @@ vpLedIdPlan vpLedIdPlanner::spread(double lines, double oscillatorPpm, size_t co
       best = std::move(lamps);
     }
   }
-  best.resize(std::min(best.size(), count)); // the rows are filled from below: the last ones are at the top
-  return judged(best, lines, oscillatorPpm);
+  best.resize(std::min(best.size(), count));
+  const vpLedIdPlan plan = judged(best, lines, oscillatorPpm);
+  if (!isGood(plan, *this)) { // near the limit, where duty needs more room than frequency
+    std::vector<vpModulation> all = mostGood(rows, *this, lines, oscillatorPpm).identifiers;
+    if (all.size() >= count) {
+      all.resize(count);
+      return judged(all, lines, oscillatorPpm);
+    }
+  }
+  return plan;
 }
 
 vpLedIdPlan vpLedIdPlanner::judged(std::vector<vpModulation> identifiers, double lines,

@@ -64,10 +64,11 @@ struct VISP_EXPORT vpLedIdReuse {
   lamps of a map it will confuse.
 
   Distances. What is measured of a lamp scatters about what the map says with the standard deviations of
-  vpStripePrediction. The distance of two lamps is that of their features in units of these, of each feature
-  the mean of the two lamps' own, and all features together: d^2 = sum ((x1 - x2) / ((s1 + s2) / 2))^2. A
-  measurement is nearer to the wrong one of the two with probability Q(d / 2), Q the upper tail of the normal
-  distribution; of a lamp with several neighbours the sum of these is a bound.
+  vpStripePrediction. The recogniser holds a measurement against all lamps with that measurement's own doubt. So the
+  distance of two lamps is that of their features in units of the larger of their two standard deviations, all
+  features together: d^2 = sum ((x1 - x2) / max(s1, s2))^2. A measurement is nearer to the wrong one of the two with
+  probability Q(d / 2), Q the upper tail of the normal distribution; of a lamp with several neighbours the sum of
+  these is a bound.
 
   Error. Of neighbours on both sides, 2 Q(d / 2) <= maxError: d >= 6.6 for 1 in 1000.
 
@@ -78,9 +79,8 @@ struct VISP_EXPORT vpLedIdReuse {
   two neighbours (4 standard deviations each) may overlap: between them the odds decide, not the gates.
 
   Where several duties are used, neighbours in frequency get nine tenths of the error and neighbours in duty one
-  tenth: frequencies are what there is to save. A lamp takes an interval of frequencies about its own, d times as
-  wide as its doubt; lamps of one duty are apart where their intervals are disjoint, and taking that interval
-  next that ends first gives the most of them. So frequencies at which edges hide are passed over by themselves.
+  tenth, or less where that is not enough: frequencies are what there is to save. Of each duty the longest chain of frequencies is taken in which
+  neighbours are far enough apart, which passes over those at which edges hide (vpStripePrediction::hiddenEdges()).
 */
 class VISP_EXPORT vpLedIdPlanner
 {
