@@ -38,8 +38,26 @@ vpReportTable pairTable(const vpLampMap &map, const std::vector<vpLedIdPair> &pa
                           vpFigureText(pairs[i].error),
                           pairs[i].chips < 0 ? "" : std::to_string(pairs[i].chips)});
   }
-  table.note = "Distance in standard deviations; error: probability of taking the one for the other.";
+  table.note = "Distance in standard deviations, at the phase that hides most edges; error: probability of taking "
+               "the one for the other there.";
   return table;
+}
+
+//! Lamps that blink faster than the rig can follow; empty where there are none.
+std::string tooFast(const vpLampMap &map, const vpLedIdPlanner &planner)
+{
+  size_t count = 0;
+  std::string first;
+  for (const vpLamp &lamp : map.lamps) {
+    if (lamp.modulation.frequency > planner.highest()) { // 0 of words
+      first = count == 0 ? lamp.id : first;
+      ++count;
+    }
+  }
+  return count == 0 ? ""
+                    : vpOneLine(first) + (count > 1 ? " and " + std::to_string(count - 1) + " more" : "") +
+                          ": above " + vpFigureText(planner.highest()) +
+                          " Hz, from where on exposure or rate of lines leave no stripes to rely on";
 }
 
 vpReportTable reuseTable(const vpLampMap &map, const std::vector<vpLedIdReuse> &shared, size_t worst)
@@ -69,6 +87,9 @@ vpExitCode vpPlanCheck(const vpPlanOptions &options)
   if (pairs.empty() && shared.empty()) {
     spdlog::error(vpOneLine(options.check) + ": no two lamps that blink alike, nothing to confuse");
     return vpExitCode::nothingFound;
+  }
+  if (const std::string warning = tooFast(map, planner); !warning.empty()) {
+    spdlog::warn(warning);
   }
   if (!pairs.empty()) {
     std::cout << pairTable(map, pairs, options.worst).text();
