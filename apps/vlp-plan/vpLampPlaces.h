@@ -18,8 +18,8 @@ struct vpLampPlaces {
   std::vector<std::string> comment; // lines to head the file
 
   /*!
-    Places from a lamp map, or from a CSV with the header id,x_m,y_m,z_m. \param diameter m, of lamps that have
-    none there; NaN: none. \throw vpException where the file is bad, or a lamp has no size.
+    Places from a lamp map, or from a CSV with the header id,x_m,y_m,z_m. \param diameter m, of lamps that
+    have none there; NaN: none. \throw vpException where the file is bad, or a lamp has no size.
   */
   static vpLampPlaces load(const std::string &filename, double diameter);
 

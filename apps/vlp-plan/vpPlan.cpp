@@ -25,9 +25,9 @@ namespace
 {
 //! The lamps as the rig will see them.
 struct Seen {
-  std::vector<double> lines;           // of the smallest and the largest lamp
-  std::optional<vpLampPlaces> places;  // where they hang, if that was said
-  size_t wanted = 0;                   // identifiers; 0: all there are
+  std::vector<double> lines;          // of the smallest and the largest lamp
+  std::optional<vpLampPlaces> places; // where they hang, if that was said
+  size_t wanted = 0;                  // identifiers; 0: all there are
 };
 
 Seen seenBy(const vpVlpRig &rig, const vpLedIdPlanner &planner, const vpPlanOptions &options)
@@ -73,9 +73,8 @@ std::string percent(double share)
 void refuseTooMany(Choice &choice, size_t wanted, const char *option)
 {
   if (choice.capacity < wanted) {
-    choice.refusal = std::string(option) + ": " + std::to_string(wanted) +
-                     ", expected at most the " + std::to_string(choice.capacity) +
-                     " identifiers that the rig holds";
+    choice.refusal = std::string(option) + ": " + std::to_string(wanted) + ", expected at most the " +
+                     std::to_string(choice.capacity) + " identifiers that the rig holds";
   }
 }
 
@@ -86,8 +85,9 @@ Choice chooseFrequencies(const vpLedIdPlanner &planner, const vpPlanOptions &opt
   Choice choice;
   choice.capacity = plan.identifiers.size();
   if (choice.capacity == 0) {
-    choice.refusal = "no frequency is left: from " + vpFigureText(planner.lowest(lines)) + " Hz (stripes on " +
-                     vpFigureText(lines) + " lines) to " + vpFigureText(planner.highest()) + " Hz";
+    choice.refusal = "no frequency is left: from " + vpFigureText(planner.lowest(lines)) +
+                     " Hz (stripes on " + vpFigureText(lines) + " lines) to " +
+                     vpFigureText(planner.highest()) + " Hz";
     return choice;
   }
   refuseTooMany(choice, seen.wanted, options.place.empty() ? "--lamps" : "--place");
@@ -105,16 +105,15 @@ Choice chooseFrequencies(const vpLedIdPlanner &planner, const vpPlanOptions &opt
   for (const double duty : duties) {
     dutyText += (dutyText.empty() ? "" : ", ") + vpNumberText(duty);
   }
-  choice.table.rows = {
-      {"frequencies to choose from, Hz",
-       vpFigureText(planner.lowest(lines)) + " to " + vpFigureText(planner.highest())},
-      {"at most, by counting stripes", std::to_string(planner.bins(lines))},
-      {"at most", std::to_string(choice.capacity)},
-      {"chosen", std::to_string(plan.identifiers.size())},
-      {"their duties", dutyText},
-      {"least distance, standard deviations", vpFigureText(plan.separation)},
-      {"probability of a wrong id, at most", vpFigureText(plan.error)},
-      {"lamps that get an id, at least", percent(plan.acceptance)}};
+  choice.table.rows = {{"frequencies to choose from, Hz",
+                        vpFigureText(planner.lowest(lines)) + " to " + vpFigureText(planner.highest())},
+                       {"at most, by counting stripes", std::to_string(planner.bins(lines))},
+                       {"at most", std::to_string(choice.capacity)},
+                       {"chosen", std::to_string(plan.identifiers.size())},
+                       {"their duties", dutyText},
+                       {"least distance, standard deviations", vpFigureText(plan.separation)},
+                       {"probability of a wrong id, at most", vpFigureText(plan.error)},
+                       {"lamps that get an id, at least", percent(plan.acceptance)}};
   return choice;
 }
 
@@ -136,21 +135,21 @@ Choice chooseWords(const vpLedIdPlanner &planner, const vpPlanOptions &options, 
   if (seen.wanted > 0 && choice.refusal.empty()) {
     choice.signals.resize(seen.wanted);
   }
-  choice.table.rows = {{"words of " + std::to_string(options.format.bits) + " bits, at most",
-                        std::to_string(choice.capacity)},
-                       {"chosen", std::to_string(choice.signals.size())},
-                       {"chips in which two differ, at least", std::to_string(plan.distance)},
-                       {"lines for each chip", vpFigureText(plan.linesPerChip)},
-                       {"times that the smallest lamp shows its word", vpFigureText(plan.repetitions)},
-                       {"probability of a wrong word, at most", vpFigureText(plan.error)}};
+  choice.table.rows = {
+      {"words of " + std::to_string(options.format.bits) + " bits, at most", std::to_string(choice.capacity)},
+      {"chosen", std::to_string(choice.signals.size())},
+      {"chips in which two differ, at least", std::to_string(plan.distance)},
+      {"lines for each chip", vpFigureText(plan.linesPerChip)},
+      {"times that the smallest lamp shows its word", vpFigureText(plan.repetitions)},
+      {"probability of a wrong word, at most", vpFigureText(plan.error)}};
   return choice;
 }
 
 vpLampPlaces filled(const vpVlpRig &rig, const vpPlanOptions &options, const Seen &seen, const Choice &choice)
 {
-  vpLampPlaces places =
-      seen.places ? *seen.places
-                  : vpLampPlaces::grid(choice.signals.size(), options.diameter, rig.bMc[2][3] + options.highest);
+  vpLampPlaces places = seen.places ? *seen.places
+                                    : vpLampPlaces::grid(choice.signals.size(), options.diameter,
+                                                         rig.bMc[2][3] + options.highest);
   for (size_t i = 0; i < places.map.lamps.size(); ++i) {
     places.map.lamps[i].modulation = choice.signals[i];
     places.map.lamps[i].oscillatorPpm = options.oscillatorPpm;
@@ -163,8 +162,8 @@ void print(const Seen &seen, vpReportTable table)
   table.heading = "Identifiers";
   table.columns = {"", ""};
   const std::string smallest = vpFigureText(seen.lines.front()), largest = vpFigureText(seen.lines.back());
-  table.rows.insert(table.rows.begin(), {"lines of the smallest lamp, and of the largest",
-                                         smallest + ", " + largest});
+  table.rows.insert(table.rows.begin(),
+                    {"lines of the smallest lamp, and of the largest", smallest + ", " + largest});
   table.note = "Planned for the smallest lamp; larger ones are told apart better.";
   std::cout << table.text();
 }
@@ -179,8 +178,8 @@ vpExitCode vpPlan(const vpPlanOptions &options)
   const vpVlpRig rig = vpVlpRig::load(options.rig);
   const vpLedIdPlanner planner = options.planner(rig);
   const Seen seen = seenBy(rig, planner, options);
-  const Choice choice = options.words ? chooseWords(planner, options, seen)
-                                      : chooseFrequencies(planner, options, seen);
+  const Choice choice =
+      options.words ? chooseWords(planner, options, seen) : chooseFrequencies(planner, options, seen);
   if (!choice.refusal.empty()) {
     spdlog::error(vpOneLine(choice.refusal));
     return vpExitCode::nothingFound;

@@ -38,8 +38,9 @@ vpReportTable pairTable(const vpLampMap &map, const std::vector<vpLedIdPair> &pa
                           vpFigureText(pairs[i].error),
                           pairs[i].chips < 0 ? "" : std::to_string(pairs[i].chips)});
   }
-  table.note = "Distance in standard deviations, at the phase that hides most edges; error: probability of taking "
-               "the one for the other there.";
+  table.note = "Error: probability of taking the one for the other. Distance: standard deviations, at the "
+               "phase of lamp "
+               "against lines that hides most edges.";
   return table;
 }
 

@@ -18,9 +18,9 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const char *const description =
-    "Plans how lamps blink so that a rig tells them apart: frequencies and duties, or words; how many of them\n"
-    "there can be; and which lamps of a map may be taken for each other.\n";
+const char *const description = "Plans how lamps blink so that a rig tells them apart: frequencies and "
+                                "duties, or words; how many of them\n"
+                                "there can be; and which lamps of a map may be taken for each other.\n";
 
 const char *const footer = R"(
 Examples:
@@ -67,7 +67,8 @@ std::vector<double> numbersOf(const std::string &text, char separator)
 }
 
 //! FROM:TO, or one number for both.
-void readRange(const std::string &option, const std::string &text, const char *unit, double &low, double &high)
+void readRange(const std::string &option, const std::string &text, const char *unit, double &low,
+               double &high)
 {
   const std::vector<double> ends = numbersOf(text, ':');
   if (ends.empty() || ends.size() > 2 || !(ends.front() > 0) || ends.back() < ends.front()) {
@@ -100,7 +101,8 @@ std::vector<double> dutiesOf(const std::string &text)
     good = good && duty > 0 && duty < 1;
   }
   if (!good) {
-    fail("--duties: " + vpShown(text) + ", expected up to 8 different numbers between 0 and 1, as 0.2,0.5,0.8");
+    fail("--duties: " + vpShown(text) +
+         ", expected up to 8 different numbers between 0 and 1, as 0.2,0.5,0.8");
   }
   return duties;
 }
@@ -117,9 +119,7 @@ void readNumber(const std::string &option, const std::string &text, double low, 
 CLI::Option *addCount(CLI::App &app, const std::string &option, size_t &count, const std::string &help)
 {
   static const size_t most = 100000;
-  return app.add_option(option, count, help)
-      ->type_name("N")
-      ->check(CLI::Range(static_cast<size_t>(1), most));
+  return app.add_option(option, count, help)->type_name("N")->check(CLI::Range(static_cast<size_t>(1), most));
 }
 } // namespace
 
@@ -133,10 +133,12 @@ bool vpPlanOptions::parse(int argc, char **argv)
   size_t bits = format.bits, apart = format.minDistance;
   vpAddName(app, "--rig", rig, "FILE", "the camera on the robot");
   vpAddName(app, "--heights", heights, "FROM:TO", "m, how far above the camera the lamps will hang");
-  vpAddName(app, "--diameter", size, "M", "of the lamps, or side of square ones; of those without one in a map");
+  vpAddName(app, "--diameter", size, "M",
+            "of the lamps, or side of square ones; of those without one in a map");
   vpAddName(app, "--oscillator", oscillator, "crystal|rc|PPM",
             "standard deviation of the lamps' clocks: 50 ppm (default), 10000 ppm, or as said");
-  addCount(app, "--lamps", lamps, "how many identifiers to choose, as far apart as can be; default: all there are");
+  addCount(app, "--lamps", lamps,
+           "how many identifiers to choose, as far apart as can be; default: all there are");
   vpAddName(app, "--error", wrong, "P", "probability of taking a lamp for another one; default 0.001");
   vpAddName(app, "--snr-db", snr, "DB", "stripes against the noise of a line; default 20, which is careful");
   vpAddName(app, "--duties", dutyList, "D,D,...", "that lamps may have; default 0.2,0.5,0.8");
@@ -144,11 +146,13 @@ bool vpPlanOptions::parse(int argc, char **argv)
             "Hz; default: from 3 stripes or 500 Hz to where exposure or rate of lines end it");
   vpAddName(app, "--place", place, "FILE", "where the lamps hang: a lamp map, or a CSV of positions");
   vpAddName(app, "--out", out, "FILE", "write the lamp map");
-  vpAddName(app, "--picture", picture, "FILE.png", "draw how many identifiers there are for lamps of any size");
+  vpAddName(app, "--picture", picture, "FILE.png",
+            "draw how many identifiers there are for lamps of any size");
   CLI::Option *const asWords = app.add_flag("--words", words, "plan words instead of frequencies");
   const std::vector<CLI::Option *> ofWords = {
       addCount(app, "--bits", bits, "of a word, header included; default 14"),
-      app.add_option("--header", format.header, "bits that a word begins with; default 011110")->type_name("BITS"),
+      app.add_option("--header", format.header, "bits that a word begins with; default 011110")
+          ->type_name("BITS"),
       app.add_option("--chip-rate", chipRate, "Hz; default 8000")->type_name("HZ"),
       addCount(app, "--chips-apart", apart, "in which two words differ at least, however turned; default 2")};
   vpAddChoice(app, "--code", code, {"manchester", "ook"}, "of the words; default manchester");
@@ -189,7 +193,8 @@ void vpPlanOptions::checkTogether(bool ook) const
   }
   if (!check.empty()) {
     if (!out.empty() || !picture.empty() || !place.empty() || lamps > 0 || words) {
-      fail("--check: with --out, --picture, --place, --lamps or --words, expected none of these: it plans nothing");
+      fail("--check: with --out, --picture, --place, --lamps or --words, expected none of these: it plans "
+           "nothing");
     }
     return;
   }

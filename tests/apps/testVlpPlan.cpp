@@ -60,8 +60,8 @@ TEST_F(VlpPlan, HelpHasExamplesAndExitCodes)
 {
   vpProcess help("vlp-plan", {"--help"});
   EXPECT_EQ(help.wait(), done);
-  for (const char *part : {"Examples:", "--heights FROM:TO", "above the camera, not above the floor", "--check FILE",
-                           "Exit code: 0 done; 2 bad usage"}) {
+  for (const char *part : {"Examples:", "--heights FROM:TO", "above the camera, not above the floor",
+                           "--check FILE", "Exit code: 0 done; 2 bad usage"}) {
     EXPECT_NE(help.out().find(part), std::string::npos) << part;
   }
 }
@@ -95,8 +95,8 @@ TEST_F(VlpPlan, WritesAMapThatReadsBack)
 TEST_F(VlpPlan, KeepsPlacesAndIds)
 {
   const std::string csv = folder.write("places.csv", "id,x_m,y_m,z_m\nhall,1,2,1.6\ndoor,-1,0.5,1.5\n");
-  vpProcess plan("vlp-plan", {"--rig", rig, "--place", csv, "--diameter", "0.2", "--oscillator", "rc", "--out",
-                              folder / "out"});
+  vpProcess plan("vlp-plan", {"--rig", rig, "--place", csv, "--diameter", "0.2", "--oscillator", "rc",
+                              "--out", folder / "out"});
   EXPECT_EQ(plan.wait(), done) << plan.err();
   const vpLampMap map = vpLampMap::load(folder / "out");
   ASSERT_EQ(map.lamps.size(), 2u);
@@ -146,13 +146,15 @@ TEST_F(VlpPlan, ReportsReuse)
   vpProcess check("vlp-plan", {"--rig", rig, "--check", map});
   EXPECT_EQ(check.wait(), done) << check.err();
   EXPECT_NE(check.out().find("Identifiers that lamps share (1)"), std::string::npos) << check.out();
-  EXPECT_NE(check.out().find("1000 Hz, 0.5      2                A  B        5"), std::string::npos) << check.out();
+  EXPECT_NE(check.out().find("1000 Hz, 0.5      2                A  B        5"), std::string::npos)
+      << check.out();
 }
 
 TEST_F(VlpPlan, WhatTheRigCannotHoldIsSaid)
 {
   const std::string out = folder / "out";
-  expectOneLine(with({"--lamps", "5000", "--out", out}), nothingFound, {"--lamps: 5000, expected at most the "});
+  expectOneLine(with({"--lamps", "5000", "--out", out}), nothingFound,
+                {"--lamps: 5000, expected at most the "});
   expectOneLine({"--rig", rig, "--heights", "30", "--diameter", "0.175", "--out", out}, nothingFound,
                 {"no frequency is left"});
   expectOneLine(with({"--words", "--chip-rate", "1000", "--out", out}), nothingFound,
@@ -172,7 +174,8 @@ TEST_F(VlpPlan, BadUsageIsOneClearLine)
     expectOneLine({"--rig", rig, "--diameter", "0.1", "--heights=" + heights}, badInput,
                   {"--heights: " + heights + ", expected FROM:TO"});
   }
-  expectOneLine(with({"--oscillator", "quartz"}), badInput, {"--oscillator: quartz, expected crystal (50 ppm)"});
+  expectOneLine(with({"--oscillator", "quartz"}), badInput,
+                {"--oscillator: quartz, expected crystal (50 ppm)"});
   for (const std::string duties : {"0.5,1", "0", "0.2,0.2", "0.2,,0.5", "half"}) {
     expectOneLine(with({"--duties", duties}), badInput, {"--duties: " + duties + ", expected up to 8"});
   }
@@ -191,10 +194,12 @@ TEST_F(VlpPlan, BadUsageIsOneClearLine)
 TEST_F(VlpPlan, BadFilesAreOneClearLine)
 {
   const std::string none = folder / "none.yaml";
-  expectOneLine({"--rig", none, "--heights", "1", "--diameter", "0.1"}, badInput, {"none.yaml: cannot be opened"});
+  expectOneLine({"--rig", none, "--heights", "1", "--diameter", "0.1"}, badInput,
+                {"none.yaml: cannot be opened"});
   expectOneLine({"--rig", rig, "--check", none}, badInput, {"none.yaml: cannot be opened"});
   const std::string twice = folder.write("twice.csv", "id,x_m,y_m,z_m\nA,0,0,2\nA,1,1,2\n");
-  expectOneLine({"--rig", rig, "--place", twice, "--diameter", "0.1"}, badInput, {"twice.csv:3: id: A, expected"});
+  expectOneLine({"--rig", rig, "--place", twice, "--diameter", "0.1"}, badInput,
+                {"twice.csv:3: id: A, expected"});
   const std::string low = folder.write("low.csv", "id,x_m,y_m,z_m\nA,0,0,0.1\n");
   expectOneLine({"--rig", rig, "--place", low}, badInput, {"--diameter: nothing, expected", "lamp A"});
   expectOneLine({"--rig", rig, "--place", low, "--diameter", "0.1"}, badInput,

@@ -93,8 +93,8 @@ TEST(LedIdPlanner, LinesOfALamp)
   EXPECT_NEAR(small.fold(), 4532, 1);
 }
 
-// reference/vlp.md: row time 50 us and known, ten standard deviations from lamp to lamp. Its 20 dB are those of the
-// sinusoid's power, A^2 / 2 over sigma^2: 3 dB more here.
+// reference/vlp.md: row time 50 us and known, ten standard deviations from lamp to lamp. Its 20 dB are those
+// of the sinusoid's power, A^2 / 2 over sigma^2: 3 dB more here.
 TEST(LedIdPlanner, BoundsOfTheLiterature)
 {
   const auto identifiers = [](const std::string &name, double lines, double highest) {
@@ -143,12 +143,12 @@ TEST(LedIdPlanner, CapacityGrowsWithLinesAndSnrAndFallsWithTheClock)
     EXPECT_TRUE(std::is_sorted(counts.rbegin(), counts.rend())) << lines;
     before = counts[1];
   }
-  const size_t dark = [&] {
+  const size_t noisy = [&] {
     planner.prediction.snrDb = 10;
     return planner.capacities(57, {crystal})[0];
   }();
   planner.prediction.snrDb = 20;
-  EXPECT_GT(planner.capacities(57, {crystal})[0], dark);
+  EXPECT_GT(planner.capacities(57, {crystal})[0], noisy);
 }
 
 TEST(LedIdPlanner, HoldsWhatIsAskedForOfIt)
@@ -169,8 +169,12 @@ TEST(LedIdPlanner, IdentifiersAreAsFarApartAsStated)
     EXPECT_LE(plan.error, planner.maxError);
     EXPECT_GE(plan.acceptance, planner.minAcceptance);
     EXPECT_GE(plan.separation, planner.neededDistance(0.9) - 1e-6);
-    const std::vector<vpLedIdPair> pairs = planner.confusion(mapOf(plan.identifiers, ppm));
-    EXPECT_NEAR(pairs.front().distance, plan.separation, 1e-6 * plan.separation);
+    double nearest = INFINITY;
+    for (const vpLedIdPair &pair : planner.confusion(mapOf(plan.identifiers, ppm))) {
+      nearest = std::min(nearest, pair.distance);
+      EXPECT_LE(pair.error, planner.maxError);
+    }
+    EXPECT_NEAR(nearest, plan.separation, 0.01 * nearest); // of lamps at 1.5 m, less a rounding of lines
     for (const vpModulation &lamp : plan.identifiers) {
       EXPECT_GE(lamp.frequency, 500);
       EXPECT_LE(lamp.frequency, 0.9 * planner.prediction.fold());
@@ -183,7 +187,7 @@ TEST(LedIdPlanner, FewerLampsAreFartherApart)
 {
   const vpLedIdPlanner planner(rigOf(resized));
   double before = INFINITY;
-  for (const size_t count : {1u, 2u, 10u, 50u, 150u}) {
+  for (const size_t count : {2u, 10u, 150u}) {
     const vpLedIdPlan plan = planner.spread(57, crystal, count);
     EXPECT_EQ(plan.identifiers.size(), count);
     EXPECT_LE(plan.separation, before);
@@ -226,8 +230,8 @@ TEST(LedIdPlanner, RecogniserErrsNoMoreThanStated)
   EXPECT_LE(refused + wrong, atMost(1 - plan.acceptance, trials));
 }
 
-// From light on lines to an id, on the planned lamps of the least doubt allowed: clocks, row time and phase are
-// drawn, too.
+// From light on lines to an id, on the planned lamps of the least doubt allowed: clocks, row time and phase
+// are drawn, too.
 TEST(LedIdPlanner, AnalyserAndRecogniserTellTheLampsApart)
 {
   for (const std::string &name : {fullSize, resized}) {
@@ -318,8 +322,8 @@ TEST(LedIdPlanner, ConfusionFindsThePairsThatAreNear)
   ASSERT_EQ(pairs.size(), 4u); // three of pwm, one of words: kinds are told apart
   EXPECT_EQ(pairs[0].first, 0u);
   EXPECT_EQ(pairs[0].second, 1u);
-  const double sigma = planner.prediction.doubt(pwm(2000, 0.5), planner.prediction.lines(diameter, height), crystal)
-                           .frequency;
+  const double sigma =
+      planner.prediction.doubt(pwm(2000, 0.5), planner.prediction.lines(diameter, height), crystal).frequency;
   EXPECT_NEAR(pairs[0].distance, 2 / sigma, 0.01);
   EXPECT_NEAR(pairs[0].error, 0.5 * std::erfc(1 / sigma / std::sqrt(2)), 0.005);
   EXPECT_EQ(pairs.back().chips, 4); // 10 and 01 in manchester

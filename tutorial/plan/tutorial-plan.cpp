@@ -56,8 +56,8 @@ int main(int argc, char **argv)
     }
 
     const vpLedIdPlan all = planner.largest(lines, crystal);
-    std::printf("at most %zu: distance %.1f, error %.1g, accepted %.2f %%\n", all.identifiers.size(), all.separation,
-                all.error, 100 * all.acceptance);
+    std::printf("at most %zu: distance %.1f, error %.1g, accepted %.2f %%\n", all.identifiers.size(),
+                all.separation, all.error, 100 * all.acceptance);
     const vpLedIdPlan plan = planner.spread(lines, crystal, wanted);
     std::printf("%zu lamps: distance %.1f\n", plan.identifiers.size(), plan.separation);
 

@@ -100,10 +100,11 @@ double vpFrequencyRows::roomAcross(unsigned int set, size_t row) const
 
 /*!
   The longest chain of candidates in which each is far enough from the one before, as the less certain of both
-  demands: for each candidate in turn the longest chain that ends there, which goes on from a candidate that is
-  below its reach and whose own reach is below it.
+  demands: for each candidate in turn the longest chain that ends there, which goes on from a candidate that
+  is below its reach and whose own reach is below it.
 */
-std::vector<double> vpFrequencyRows::longestChain(const std::vector<Candidate> &candidates, double distance) const
+std::vector<double> vpFrequencyRows::longestChain(const std::vector<Candidate> &candidates,
+                                                  double distance) const
 {
   const size_t n = candidates.size();
   std::vector<double> reach(n);
@@ -113,7 +114,8 @@ std::vector<double> vpFrequencyRows::longestChain(const std::vector<Candidate> &
     byReachedUntil[i] = i;
   }
   const auto until = [&](size_t i) { return candidates[i].frequency + reach[i]; };
-  std::stable_sort(byReachedUntil.begin(), byReachedUntil.end(), [&](size_t a, size_t b) { return until(a) < until(b); });
+  std::stable_sort(byReachedUntil.begin(), byReachedUntil.end(),
+                   [&](size_t a, size_t b) { return until(a) < until(b); });
   LongestBefore longest(n);
   std::vector<size_t> length(n, 1), before(n, n);
   size_t open = 0, last = n; // how many may be gone on from; the end of the longest chain of all

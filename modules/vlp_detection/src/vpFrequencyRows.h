@@ -12,8 +12,8 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Lamps in rows of one duty each, along the frequencies, as many as there is room for: frequencies of much doubt,
-  where edges hide, are passed over.
+  Lamps in rows of one duty each, along the frequencies, as many as there is room for: frequencies of much
+  doubt, where edges hide, are passed over.
 */
 class vpFrequencyRows
 {
@@ -27,8 +27,8 @@ public:
   static bool several(unsigned int set) { return (set & (set - 1)) != 0; }
 
   /*!
-    As many lamps as there is room for, neighbours of a row so many standard deviations of frequency apart, and
-    those of different rows so many of duty: a lamp whose duty is less certain than that is left out.
+    As many lamps as there is room for, neighbours of a row so many standard deviations of frequency apart,
+    and those of different rows so many of duty: a lamp whose duty is less certain than that is left out.
   */
   std::vector<vpModulation> filled(unsigned int set, double alongFrequency, double acrossDuty) const;
 

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
@@ -23,7 +25,8 @@ namespace
 struct Seen {
   const vpModulation *sent;
   vpStripeDoubt doubt;
-  double chipDistance = 0; // of two words that differ in one chip
+  std::vector<vpStripeDoubt> scatter; // at some phases; empty of a word
+  double chipDistance = 0;            // of two words that differ in one chip
   std::string chips;
 };
 
@@ -38,24 +41,63 @@ bool comparable(const Seen &a, const Seen &b)
   return a.sent->kind == b.sent->kind && a.chips.size() == b.chips.size();
 }
 
+//! Squared distance in units of a pair of doubts, words' chips left out.
+double squaredDistance(const vpModulation &a, const vpModulation &b, const vpStripeDoubt &ofA,
+                       const vpStripeDoubt &ofB)
+{
+  double squared =
+      squaredDistance(a.repetitionFrequency() - b.repetitionFrequency(), ofA.frequency, ofB.frequency);
+  if (a.duty && b.duty) {
+    squared += squaredDistance(*a.duty - *b.duty, ofA.duty, ofB.duty);
+  }
+  if (a.kind == vpModulation::Kind::twoPulse) {
+    squared +=
+        squaredDistance(a.phaseDifference - b.phaseDifference, ofA.phaseDifference, ofB.phaseDifference);
+  }
+  return squared;
+}
+
+//! Probability that \e sent is taken for \e other, over the phases.
+double errorOf(const Seen &sent, const Seen &other)
+{
+  double sum = 0;
+  for (const vpStripeDoubt &here : sent.scatter) {
+    sum += vpNormalTail(0.5 * std::sqrt(squaredDistance(*sent.sent, *other.sent, here, here)));
+  }
+  return sum / static_cast<double>(sent.scatter.size());
+}
+
 vpLedIdPair pairOf(const Seen &a, const Seen &b)
 {
   vpLedIdPair pair;
-  double squared = squaredDistance(a.sent->repetitionFrequency() - b.sent->repetitionFrequency(),
-                                   a.doubt.frequency, b.doubt.frequency);
+  double squared = squaredDistance(*a.sent, *b.sent, a.doubt, b.doubt);
   if (a.sent->kind == vpModulation::Kind::word) {
     pair.chips = static_cast<int>(vpWordCode(a.chips).distance(vpWordCode(b.chips)));
     squared += std::pow(std::min(a.chipDistance, b.chipDistance), 2) * pair.chips;
-  } else if (a.sent->duty && b.sent->duty) {
-    squared += squaredDistance(*a.sent->duty - *b.sent->duty, a.doubt.duty, b.doubt.duty);
-  }
-  if (a.sent->kind == vpModulation::Kind::twoPulse) {
-    squared += squaredDistance(a.sent->phaseDifference - b.sent->phaseDifference, a.doubt.phaseDifference,
-                               b.doubt.phaseDifference);
   }
   pair.distance = std::sqrt(squared);
-  pair.error = vpNormalTail(0.5 * pair.distance);
+  pair.error = a.scatter.empty() ? vpNormalTail(0.5 * pair.distance) : std::max(errorOf(a, b), errorOf(b, a));
   return pair;
+}
+
+Seen seenWord(const vpStripePrediction &prediction, const vpLamp &lamp, double lines)
+{
+  const vpModulation &sent = lamp.modulation;
+  Seen seen{&sent, {}, {}, 0, sent.chips()};
+  if (seen.chips.size() > vpWordCode::mostChips) {
+    throw vpException(vpException::badValue,
+                      "lamp " + vpShown(lamp.id) + ": a word of " + std::to_string(seen.chips.size()) +
+                          " chips, expected at most " + std::to_string(vpWordCode::mostChips));
+  }
+  // Its chips tell the rate at which it repeats as a pulse of the rate of two chips tells its own.
+  vpModulation chips;
+  chips.kind = vpModulation::Kind::pwm;
+  chips.frequency = 0.5 * sent.chipRate;
+  const auto length = static_cast<double>(seen.chips.size());
+  seen.doubt.frequency = prediction.doubt(chips, lines, lamp.oscillatorPpm).frequency * 2 / length;
+  seen.chipDistance = 2 * prediction.contrast(chips.frequency) * std::sqrt(lines / length) /
+                      (prediction.lineNoise(0.5) * prediction.margin);
+  return seen;
 }
 } // namespace
 
@@ -64,7 +106,8 @@ double vpLedIdPlanner::linesOf(const vpLamp &lamp, double height, double size) c
   const double own = std::isnan(lamp.size) ? size : lamp.size;
   const double above = std::isnan(height) ? lamp.position.z() - m_cameraHeight : height;
   if (std::isnan(own)) {
-    throw vpException(vpException::badValue, "lamp " + vpShown(lamp.id) + ": no size, expected one in the map");
+    throw vpException(vpException::badValue,
+                      "lamp " + vpShown(lamp.id) + ": no size, expected one in the map");
   }
   if (!(above > 0)) {
     throw vpException(vpException::badValue, "lamp " + vpShown(lamp.id) + ": " + vpNumberText(above) +
@@ -81,28 +124,14 @@ std::vector<vpLedIdPair> vpLedIdPlanner::confusion(const vpLampMap &map, double 
     for (const size_t lamp : identifier.lamps) {
       lines = std::min(lines, linesOf(map.lamps[lamp], height, size));
     }
-    const vpModulation &sent = map.lamps[identifier.lamps.front()].modulation;
-    Seen seen{&sent, {}, 0, sent.chips()};
-    if (sent.kind == vpModulation::Kind::word) {
-      if (seen.chips.size() > vpWordCode::mostChips) {
-        throw vpException(vpException::badValue,
-                          "lamp " + vpShown(map.lamps[identifier.lamps.front()].id) + ": a word of " +
-                              std::to_string(seen.chips.size()) + " chips, expected at most " +
-                              std::to_string(vpWordCode::mostChips));
-      }
-      // Its chips tell the rate at which it repeats as a pulse of the rate of two chips tells its own.
-      vpModulation chips;
-      chips.kind = vpModulation::Kind::pwm;
-      chips.frequency = 0.5 * sent.chipRate;
-      seen.doubt.frequency = prediction.doubt(chips, lines, identifier.oscillatorPpm).frequency * 2 /
-                             static_cast<double>(seen.chips.size());
-      seen.chipDistance = 2 * prediction.contrast(chips.frequency) *
-                          std::sqrt(lines / static_cast<double>(seen.chips.size())) /
-                          (prediction.lineNoise(0.5) * prediction.margin);
-    } else {
-      seen.doubt = prediction.doubt(sent, lines, identifier.oscillatorPpm);
-    }
-    all.push_back(seen);
+    const vpLamp &lamp = map.lamps[identifier.lamps.front()];
+    all.push_back(lamp.modulation.kind == vpModulation::Kind::word
+                      ? seenWord(prediction, lamp, lines)
+                      : Seen{&lamp.modulation,
+                             prediction.doubt(lamp.modulation, lines, lamp.oscillatorPpm),
+                             prediction.scatter(lamp.modulation, lines, lamp.oscillatorPpm),
+                             0,
+                             {}});
   }
   std::vector<vpLedIdPair> pairs;
   for (size_t i = 0; i < all.size(); ++i) {
@@ -114,8 +143,9 @@ std::vector<vpLedIdPair> vpLedIdPlanner::confusion(const vpLampMap &map, double 
       }
     }
   }
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const vpLedIdPair &a, const vpLedIdPair &b) { return a.distance < b.distance; });
+  std::stable_sort(pairs.begin(), pairs.end(), [](const vpLedIdPair &a, const vpLedIdPair &b) {
+    return std::make_pair(-a.error, a.distance) < std::make_pair(-b.error, b.distance);
+  });
   return pairs;
 }
 

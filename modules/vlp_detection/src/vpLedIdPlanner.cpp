@@ -66,9 +66,8 @@ struct Placed {
 
 double distanceOf(const Placed &a, const Placed &b)
 {
-  return std::hypot(
-      (a.lamp->frequency - b.lamp->frequency) / std::max(a.doubt.frequency, b.doubt.frequency),
-      (*a.lamp->duty - *b.lamp->duty) / std::max(a.doubt.duty, b.doubt.duty));
+  return std::hypot((a.lamp->frequency - b.lamp->frequency) / std::max(a.doubt.frequency, b.doubt.frequency),
+                    (*a.lamp->duty - *b.lamp->duty) / std::max(a.doubt.duty, b.doubt.duty));
 }
 } // namespace
 
@@ -80,8 +79,8 @@ void vpLedIdPlanner::checkSettings() const
          "a probability from 0.5 to below 1");
   demand(minConfidence >= 0.5 && minConfidence < 1, "confidence", minConfidence,
          "a probability from 0.5 to below 1");
-  demand(!duties.empty() && duties.size() <= 8, "duties: number of them",
-         static_cast<double>(duties.size()), "1 to 8");
+  demand(!duties.empty() && duties.size() <= 8, "duties: number of them", static_cast<double>(duties.size()),
+         "1 to 8");
   for (const double duty : duties) {
     demand(duty > 0 && duty < 1, "duties", duty, "numbers between 0 and 1 (both excluded)");
   }

@@ -131,8 +131,7 @@ vpWordPlan vpLedIdPlanner::words(double lines, const vpWordFormat &format) const
     return plan;
   }
   const double linesOfOne = plan.linesPerChip * plan.repetitions;
-  judge(plan, codes,
-        2 * contrast * std::sqrt(linesOfOne) / (prediction.lineNoise(0.5) * prediction.margin));
+  judge(plan, codes, 2 * contrast * std::sqrt(linesOfOne) / (prediction.lineNoise(0.5) * prediction.margin));
   return plan;
 }
 

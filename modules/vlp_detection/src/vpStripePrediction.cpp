@@ -79,8 +79,8 @@ std::vector<double> edgesOf(const vpModulation &modulation)
   Of each edge that the lines see, one a period: as far as the gap between two exposures where it lies in one,
   \e seen to both sides where an exposure shows it. \param middle Of each line's exposure, n of them, s.
 */
-std::vector<Interval> intervalsOf(double phase, double period, const double *middle, size_t n, double exposure,
-                                  double seen)
+std::vector<Interval> intervalsOf(double phase, double period, const double *middle, size_t n,
+                                  double exposure, double seen)
 {
   std::vector<Interval> intervals;
   size_t line = 0;
@@ -91,8 +91,8 @@ std::vector<Interval> intervalsOf(double phase, double period, const double *mid
     }
     const double start = middle[line] - 0.5 * exposure;
     const bool hidden = edge < start;
-    intervals.push_back(
-        {-seen - (hidden ? edge - (middle[line - 1] + 0.5 * exposure) : 0), seen + (hidden ? start - edge : 0)});
+    intervals.push_back({-seen - (hidden ? edge - (middle[line - 1] + 0.5 * exposure) : 0),
+                         seen + (hidden ? start - edge : 0)});
   }
   return intervals;
 }
@@ -226,7 +226,8 @@ double vpStripePrediction::frequencySigma(const vpModulation &modulation, double
   return margin * byModel * sinusoidBound(lines, amplitude);
 }
 
-//! The delivered lines that lamp number \e trial, anywhere in the picture, covers: the first one, and how many.
+//! The delivered lines that lamp number \e trial, anywhere in the picture, covers: the first one, and how
+//! many.
 std::pair<size_t, size_t> vpStripePrediction::linesUnder(double lines, int trial) const
 {
   static const size_t stride = 7; // steps of a nearest-neighbour resize repeat after 25 lines or so
@@ -234,29 +235,37 @@ std::pair<size_t, size_t> vpStripePrediction::linesUnder(double lines, int trial
   return {m_middle.size() == n ? 0 : stride * static_cast<size_t>(trial) % (m_middle.size() - n + 1), n};
 }
 
-vpStripeDoubt vpStripePrediction::hiddenEdges(const vpModulation &modulation, double lines) const
+vpStripeDoubt vpStripePrediction::hiddenEdgesAt(const vpModulation &modulation, double lines, int trial,
+                                                double negligible) const
 {
-  vpStripeDoubt worst;
   // Short enough that the stripes hardly tell: it leaves gaps of its own.
   const double exposure = m_exposure * (1 - 0.5 * exposureTolerance);
   if (exposure >= m_lineTime) {
-    return worst;
+    return {};
   }
   // Walls of a gap are no sharper than that, as vpStripeAnalyzer has it.
   static const double untrue = 0.03;
   const double seen = untrue * std::max(0.0, m_lineTime - m_exposure);
   const double f = modulation.frequency;
+  const auto [first, n] = linesUnder(lines, trial);
+  Room room;
+  for (const double edge : edgesOf(modulation)) {
+    room.narrow(intervalsOf(edge + (trial + 0.5) / phases, 1 / f, &m_middle[first], n, exposure, seen),
+                negligible / (f * f), 1 / f);
+  }
+  const double shift = f * std::sqrt(room.shifts / 12);
+  return {f * f * (room.longer - room.shorter), shift, shift};
+}
+
+vpStripeDoubt vpStripePrediction::hiddenEdges(const vpModulation &modulation, double lines) const
+{
   static const double negligible = 0.1; // share of the doubt that there is anyhow
-  worst.frequency = negligible * frequencySigma(modulation, lines);
+  const double least = negligible * frequencySigma(modulation, lines);
+  vpStripeDoubt worst;
   for (int trial = 0; trial < phases; ++trial) {
-    const auto [first, n] = linesUnder(lines, trial);
-    Room room;
-    for (const double edge : edgesOf(modulation)) {
-      room.narrow(intervalsOf(edge + (trial + 0.5) / phases, 1 / f, &m_middle[first], n, exposure, seen),
-                  worst.frequency / (f * f), 1 / f);
-    }
-    worst.frequency = std::max(worst.frequency, f * f * (room.longer - room.shorter));
-    worst.duty = std::max(worst.duty, f * std::sqrt(room.shifts / 12));
+    const vpStripeDoubt here = hiddenEdgesAt(modulation, lines, trial, std::max(least, worst.frequency));
+    worst.frequency = std::max(worst.frequency, here.frequency);
+    worst.duty = std::max(worst.duty, here.duty);
   }
   worst.phaseDifference = worst.duty;
   return worst;
@@ -304,11 +313,29 @@ vpStripeDoubt vpStripePrediction::doubt(const vpModulation &modulation, double l
   return together(modulation, lines, oscillatorPpm, shapeSigma(modulation, lines));
 }
 
+std::vector<vpStripeDoubt> vpStripePrediction::scatter(const vpModulation &modulation, double lines,
+                                                       double oscillatorPpm) const
+{
+  const vpStripeDoubt shape = shapeSigma(modulation, lines);
+  std::vector<vpStripeDoubt> all;
+  for (int trial = 0; trial < phases; ++trial) {
+    vpStripeDoubt hidden = hiddenEdgesAt(modulation, lines, trial, 0);
+    hidden.frequency /= std::sqrt(12.); // of a uniform distribution
+    all.push_back(sum(modulation, lines, oscillatorPpm, shape, hidden));
+  }
+  return all;
+}
+
 vpStripeDoubt vpStripePrediction::together(const vpModulation &modulation, double lines, double oscillatorPpm,
                                            const vpStripeDoubt &shape) const
 {
+  return sum(modulation, lines, oscillatorPpm, shape, hiddenEdges(modulation, lines));
+}
+
+vpStripeDoubt vpStripePrediction::sum(const vpModulation &modulation, double lines, double oscillatorPpm,
+                                      const vpStripeDoubt &shape, const vpStripeDoubt &hidden) const
+{
   const double f = modulation.frequency;
-  const vpStripeDoubt hidden = hiddenEdges(modulation, lines);
   vpStripeDoubt doubt;
   doubt.frequency = std::hypot(std::hypot(frequencySigma(modulation, lines), hidden.frequency),
                                m_relativeRowTime * f, 1e-6 * oscillatorPpm * f);

@@ -47,28 +47,28 @@ struct VISP_EXPORT vpWordPlan {
 //! How easily two identifiers of a map are taken for each other.
 struct VISP_EXPORT vpLedIdPair {
   size_t first = 0, second = 0; // indices into vpLampMap::identifiers()
-  double distance = 0;          // standard deviations
-  double error = 0;             // probability that one is nearer to what is measured of the other
-  int chips = -1;               // of two words of equal length: least Hamming distance over rotations
+  double distance = 0;          // standard deviations, at the phase against the lines that hides most edges
+  double error = 0; // probability that one is nearer to what is measured of the other, at any phase
+  int chips = -1;   // of two words of equal length: least Hamming distance over rotations
 };
 
 //! Lamps that share an identifier.
 struct VISP_EXPORT vpLedIdReuse {
-  size_t identifier = 0; // index into vpLampMap::identifiers()
+  size_t identifier = 0;        // index into vpLampMap::identifiers()
   size_t first = 0, second = 0; // the two nearest of its lamps, indices into vpLampMap::lamps
   double apart = 0;             // m, between these two
 };
 
 /*!
-  Which frequencies and duties lamps should have so that a rig tells them apart, how many it can hold, and which
-  lamps of a map it will confuse.
+  Which frequencies and duties lamps should have so that a rig tells them apart, how many it can hold, and
+  which lamps of a map it will confuse.
 
   Distances. What is measured of a lamp scatters about what the map says with the standard deviations of
-  vpStripePrediction. The recogniser holds a measurement against all lamps with that measurement's own doubt. So the
-  distance of two lamps is that of their features in units of the larger of their two standard deviations, all
-  features together: d^2 = sum ((x1 - x2) / max(s1, s2))^2. A measurement is nearer to the wrong one of the two with
-  probability Q(d / 2), Q the upper tail of the normal distribution; of a lamp with several neighbours the sum of
-  these is a bound.
+  vpStripePrediction. The recogniser holds a measurement against all lamps with that measurement's own doubt.
+  So the distance of two lamps is that of their features in units of the larger of their two standard
+  deviations, all features together: d^2 = sum ((x1 - x2) / max(s1, s2))^2. A measurement is nearer to the
+  wrong one of the two with probability Q(d / 2), Q the upper tail of the normal distribution; of a lamp with
+  several neighbours the sum of these is a bound.
 
   Error. Of neighbours on both sides, 2 Q(d / 2) <= maxError: d >= 6.6 for 1 in 1000.
 
@@ -78,16 +78,17 @@ struct VISP_EXPORT vpLedIdReuse {
   d >= t + sqrt(t^2 + 2 ln(c / (1 - c))) with Q(t) = (1 - minAcceptance) / 2: 6.5 for 99.5 %. The gates of
   two neighbours (4 standard deviations each) may overlap: between them the odds decide, not the gates.
 
-  Where several duties are used, neighbours in frequency get nine tenths of the error and neighbours in duty one
-  tenth, or less where that is not enough: frequencies are what there is to save. Of each duty the longest chain of frequencies is taken in which
-  neighbours are far enough apart, which passes over those at which edges hide (vpStripePrediction::hiddenEdges()).
+  Where several duties are used, neighbours in frequency get nine tenths of the error and neighbours in duty
+  one tenth, or less where that is not enough: frequencies are what there is to save. Of each duty the longest
+  chain of frequencies is taken in which neighbours are far enough apart, which passes over those at which
+  edges hide (vpStripePrediction::hiddenEdges()).
 */
 class VISP_EXPORT vpLedIdPlanner
 {
 public:
   vpStripePrediction prediction;
-  double maxError = 1e-3;                                  // probability of a wrong id, of each lamp
-  double minAcceptance = 0.995;                            // probability of any id, of each lamp
+  double maxError = 1e-3;                       // probability of a wrong id, of each lamp
+  double minAcceptance = 0.995;                 // probability of any id, of each lamp
   double minConfidence = 0.95;                  // as vpLedIdRecognizer::minConfidence
   double gate = 4;                              // standard deviations, as vpLedIdRecognizer::gate
   std::vector<double> duties = {0.2, 0.5, 0.8}; // that lamps may have, at most 8
@@ -99,7 +100,7 @@ public:
   double flicker = 500; // Hz, above which no eye sees a lamp flicker even where gaze or lamp moves
   double leastContrast = 0.2;
   double foldShare = 0.9;
-  double frequencyStep = 1;   // Hz: frequencies are multiples of this
+  double frequencyStep = 1; // Hz: frequencies are multiples of this
 
   //! \throw vpException (badValue) as vpStripePrediction.
   explicit vpLedIdPlanner(const vpVlpRig &rig) : prediction(rig), m_cameraHeight(rig.bMc[2][3]) {}
@@ -137,20 +138,19 @@ public:
 
   /*!
     As many words as a greedy choice in ascending order finds, for lamps of so many lines. The header's chips
-    stand at one rotation of a word alone, and the lamp shows a whole word. Two words that differ in D chips at
-    their nearest rotations are at a distance of 2 (A / sigma) |sinc(r T_e / 2)| sqrt(n D), r the chip rate and
-    n the lines that see each chip, in all repetitions; `error` sums Q of half of it over all words and
+    stand at one rotation of a word alone, and the lamp shows a whole word. Two words that differ in D chips
+    at their nearest rotations are at a distance of 2 (A / sigma) |sinc(r T_e / 2)| sqrt(n D), r the chip rate
+    and n the lines that see each chip, in all repetitions; `error` sums Q of half of it over all words and
     rotations. \throw vpException (badValue) where the format is out of its range.
   */
   vpWordPlan words(double lines, const vpWordFormat &format) const;
 
   /*!
-    All pairs of identifiers of a map that could be taken for each other, the nearest first; pwm, twoPulse and
-    word are told apart by their shape, and words of different length too, so no pair has one of each. Every
-    identifier is judged on its lamp of the fewest lines.
-    \param height m of all lamps above the camera; NaN: of each by its own z, the robot standing on z = 0.
-    \param size m, of lamps whose map entry has none. \throw vpException (badValue) where a lamp has no size, or
-    hangs below the camera.
+    All pairs of identifiers of a map that could be taken for each other, the likeliest first; pwm, twoPulse
+    and word are told apart by their shape, and words of different length too, so no pair has one of each.
+    Every identifier is judged on its lamp of the fewest lines. \param height m of all lamps above the camera;
+    NaN: of each by its own z, the robot standing on z = 0. \param size m, of lamps whose map entry has none.
+    \throw vpException (badValue) where a lamp has no size, or hangs below the camera.
   */
   std::vector<vpLedIdPair> confusion(const vpLampMap &map,
                                      double height = std::numeric_limits<double>::quiet_NaN(),

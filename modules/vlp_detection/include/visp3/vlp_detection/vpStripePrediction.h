@@ -79,18 +79,20 @@ public:
   double frequencySigma(const vpModulation &modulation, double lines) const;
 
   /*!
-    What edges add that hide where lines leave gaps between their exposures: as a nearest-neighbour resize does,
-    or a short exposure. An edge in a gap may lie anywhere there, and of a frequency that is nearly a simple
-    fraction of the rate of lines all edges hide alike. Two edges of one kind, l periods apart, allow the period
-    to change by as much as both have room, divided by l; the narrowest of these bounds is taken for a uniform
-    distribution, and of all phases against the lines the worst. In Hz and periods.
+    What edges add that hide where lines leave gaps between their exposures: as a nearest-neighbour resize
+    does, or a short exposure. An edge in a gap may lie anywhere there, and of a frequency that is nearly a
+    simple fraction of the rate of lines all edges hide alike. Two edges of one kind, l periods apart, allow
+    the period to change by as much as both have room, divided by l. The narrowest of these ranges is what the
+    frequency may be off by; all of it is taken for a standard deviation, since the analyser's own ones reach
+    that, and of all phases against the lines the worst. In Hz and periods.
   */
   vpStripeDoubt hiddenEdges(const vpModulation &modulation, double lines) const;
 
   /*!
-    Standard deviations of duty and phase difference by the stripes, edges all seen: from the Fisher information
-    of frequency, phase, duty, exposure (known to `exposureTolerance` only), phase difference, offset and
-    amplitude together, averaged over the phase. A pulse or gap shorter than the exposure is taken for it.
+    Standard deviations of duty and phase difference by the stripes, edges all seen: from the Fisher
+    information of frequency, phase, duty, exposure (known to `exposureTolerance` only), phase difference,
+    offset and amplitude together, averaged over the phase. A pulse or gap shorter than the exposure is taken
+    for it.
   */
   vpStripeDoubt shapeSigma(const vpModulation &modulation, double lines) const;
 
@@ -101,10 +103,21 @@ public:
   vpStripeDoubt together(const vpModulation &modulation, double lines, double oscillatorPpm,
                          const vpStripeDoubt &shape) const;
 
-  //! Root mean square of what a line of the lamp may be off by, as a share of A: noise, and the model's error.
+  //! Root mean square of what a line of the lamp may be off by, as a share of A: noise, and the model's
+  //! error.
   double lineNoise(double duty) const;
 
+  //! How far measurements will scatter, at each of some phases of the lamp against the lines: with the range
+  //! that hidden edges leave there as a uniform distribution. Mostly far less than doubt(), which has the
+  //! worst.
+  std::vector<vpStripeDoubt> scatter(const vpModulation &modulation, double lines,
+                                     double oscillatorPpm) const;
+
 private:
+  vpStripeDoubt hiddenEdgesAt(const vpModulation &modulation, double lines, int trial,
+                              double negligible) const;
+  vpStripeDoubt sum(const vpModulation &modulation, double lines, double oscillatorPpm,
+                    const vpStripeDoubt &shape, const vpStripeDoubt &hidden) const;
   std::pair<size_t, size_t> linesUnder(double lines, int trial) const;
 
   std::vector<double> m_middle; // s, of each delivered line's exposure, ascending

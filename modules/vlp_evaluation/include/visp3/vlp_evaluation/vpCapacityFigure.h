@@ -23,8 +23,8 @@ struct VISP_EXPORT vpCapacityCurve {
 };
 
 /*!
-  Identifiers against the lines of a lamp, the count on a logarithmic axis; points without identifiers are left
-  out. \param lamps Lines of the smallest and the largest lamp that a rig will see, shaded; empty: none.
+  Identifiers against the lines of a lamp, the count on a logarithmic axis; points without identifiers are
+  left out. \param lamps Lines of the smallest and the largest lamp that a rig will see, shaded; empty: none.
 */
 VISP_EXPORT vpFigure vpCapacityFigure(const std::vector<vpCapacityCurve> &curves,
                                       const std::vector<double> &lamps);
