@@ -208,7 +208,7 @@ TEST(LedIdPlanner, RecogniserErrsNoMoreThanStated)
   const vpLedIdRecognizer recognizer(map, rig.shutter);
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;
-  const int trials = 30000;
+  const int trials = 15000;
   int wrong = 0, refused = 0;
   for (int trial = 0; trial < trials; ++trial) {
     const vpLamp &lamp = map.lamps[generator() % map.lamps.size()];
@@ -246,7 +246,7 @@ TEST(LedIdPlanner, AnalyserAndRecogniserTellTheLampsApart)
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform(0, 1);
     const double amplitude = 75, noise = amplitude / 10; // grey levels: 20 dB
-    const int trials = 400;
+    const int trials = 250;
     int wrong = 0, refused = 0;
     for (int trial = 0; trial < trials; ++trial) {
       const vpLamp &lamp = map.lamps[generator() % map.lamps.size()];

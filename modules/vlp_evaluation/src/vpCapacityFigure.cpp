@@ -61,7 +61,7 @@ vpFigure vpCapacityFigure(const std::vector<vpCapacityCurve> &curves, const std:
   }
   figure.body += range("x", 0.95 * first, 1.02 * last) + "set yrange [1:*]\nset logscale y\n" +
                  axisLabel("x", "lines of the lamp in the picture") + axisLabel("y", "identifiers") +
-                 "set key bottom right vertical nobox\n";
+                 "set key vertical\n";
   if (!lamps.empty()) {
     figure.body += band(lamps.front(), lamps.back());
     figure.caption += " Shaded: lamps as far as they will hang.";
