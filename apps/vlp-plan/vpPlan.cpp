@@ -187,7 +187,7 @@ vpExitCode vpPlan(const vpPlanOptions &options)
   if (!options.picture.empty()) {
     vpGnuplot::check();
     vpAtomicFile file(options.picture); // tells before the work whether it can be written
-    const std::string bytes = vpPlanPicture(options, planner, seen.lines);
+    const std::string bytes = vpPlanPicture(options, planner, seen.lines, choice.capacity);
     file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.commit();
   }

@@ -36,7 +36,7 @@ std::vector<double> linesToDraw(const vpLedIdPlanner &planner, const std::vector
 } // namespace
 
 std::string vpPlanPicture(const vpPlanOptions &options, const vpLedIdPlanner &planner,
-                          const std::vector<double> &lamps)
+                          const std::vector<double> &lamps, size_t words)
 {
   static const double crystal = 50, rc = 10000; // ppm
   std::vector<double> oscillators = {options.oscillatorPpm};
@@ -50,6 +50,9 @@ std::string vpPlanPicture(const vpPlanOptions &options, const vpLedIdPlanner &pl
     const std::string kind = ppm == crystal ? "crystal, " : (ppm == rc ? "RC, " : "");
     curves.push_back({kind + vpNumberText(ppm) + " ppm", {}, false});
   }
+  const double chips =
+      options.format.bits * (options.format.code == vpModulation::Code::manchester ? 2. : 1.);
+  const double wordLines = chips / (options.format.chipRate * planner.prediction.lineTime());
   if (options.words) {
     curves.push_back({"words", {}, false});
   }
@@ -63,8 +66,8 @@ std::string vpPlanPicture(const vpPlanOptions &options, const vpLedIdPlanner &pl
       curves[j].points.push_back({lines, static_cast<double>(counts[j])});
     }
     if (options.words) {
-      const size_t words = planner.words(lines, options.format).words.size();
-      curves.back().points.push_back({lines, static_cast<double>(words)});
+      const bool shown = lines >= wordLines;
+      curves.back().points.push_back({lines, shown ? static_cast<double>(words) : 0});
     }
     others.points.push_back({lines, static_cast<double>(planner.bins(lines))});
     progress.show(i + 1);

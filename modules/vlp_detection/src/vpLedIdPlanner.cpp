@@ -101,7 +101,7 @@ double vpLedIdPlanner::lowest(double lines) const
 double vpLedIdPlanner::highest() const
 {
   if (!std::isnan(highestFrequency)) {
-    return highestFrequency;
+    return std::min(highestFrequency, prediction.fold());
   }
   return std::min(prediction.frequencyOfContrast(leastContrast), foldShare * prediction.fold());
 }

@@ -94,7 +94,8 @@ public:
   std::vector<double> duties = {0.2, 0.5, 0.8}; // that lamps may have, at most 8
   //! Hz; NaN: that of `leastStripes` on the lamp, yet at least `flicker`.
   double lowestFrequency = std::numeric_limits<double>::quiet_NaN();
-  //! Hz; NaN: the lower one of where the exposure leaves `leastContrast`, and `foldShare` of the fold.
+  //! Hz, cut at the fold; NaN: the lower one of where the exposure leaves `leastContrast`, and `foldShare` of
+  //! the fold.
   double highestFrequency = std::numeric_limits<double>::quiet_NaN();
   double leastStripes = 3;
   double flicker = 500; // Hz, above which no eye sees a lamp flicker even where gaze or lamp moves
