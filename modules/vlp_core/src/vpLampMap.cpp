@@ -225,9 +225,12 @@ vpLampMap vpLampMap::load(const std::string &filename)
   return map;
 }
 
-void vpLampMap::save(const std::string &filename) const
+void vpLampMap::save(const std::string &filename, const std::vector<std::string> &comment) const
 {
   vpAtomicFile file(filename);
+  for (const std::string &line : comment) {
+    file.stream() << "# " << line << "\n";
+  }
   file.stream() << "lamps:\n";
   for (const vpLamp &lamp : lamps) {
     file.stream() << lampText(lamp);

@@ -62,8 +62,11 @@ struct VISP_EXPORT vpLampMap {
   */
   static vpLampMap load(const std::string &filename);
 
-  //! Writes a lamps.yaml that load() reads back unchanged; to a temporary name first, then renamed.
-  void save(const std::string &filename) const;
+  /*!
+    Writes a lamps.yaml that load() reads back unchanged; to a temporary name first, then renamed.
+    \param comment Lines that head the file, each behind a #.
+  */
+  void save(const std::string &filename, const std::vector<std::string> &comment = {}) const;
 };
 
 END_VISP_NAMESPACE

@@ -1,0 +1,176 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// What vpLedIdPlanner says of a map that there is.
+
+#include <visp3/vlp_detection/vpLedIdPlanner.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+#include "vpNormalTail.h"
+#include "vpWordCode.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! An identifier as the rig sees the smallest of its lamps.
+struct Seen {
+  const vpModulation *sent;
+  vpStripeDoubt doubt;
+  std::vector<vpStripeDoubt> scatter; // at some phases; empty of a word
+  double chipDistance = 0;            // of two words that differ in one chip
+  std::string chips;
+};
+
+double squaredDistance(double difference, double sigma, double otherSigma)
+{
+  const double distance = difference / std::max(sigma, otherSigma);
+  return distance * distance;
+}
+
+bool comparable(const Seen &a, const Seen &b)
+{
+  return a.sent->kind == b.sent->kind && a.chips.size() == b.chips.size();
+}
+
+//! Squared distance in units of a pair of doubts, words' chips left out.
+double squaredDistance(const vpModulation &a, const vpModulation &b, const vpStripeDoubt &ofA,
+                       const vpStripeDoubt &ofB)
+{
+  double squared =
+      squaredDistance(a.repetitionFrequency() - b.repetitionFrequency(), ofA.frequency, ofB.frequency);
+  if (a.duty && b.duty) {
+    squared += squaredDistance(*a.duty - *b.duty, ofA.duty, ofB.duty);
+  }
+  if (a.kind == vpModulation::Kind::twoPulse) {
+    squared +=
+        squaredDistance(a.phaseDifference - b.phaseDifference, ofA.phaseDifference, ofB.phaseDifference);
+  }
+  return squared;
+}
+
+//! Probability that \e sent is taken for \e other, over the phases.
+double errorOf(const Seen &sent, const Seen &other)
+{
+  double sum = 0;
+  for (const vpStripeDoubt &here : sent.scatter) {
+    sum += vpNormalTail(0.5 * std::sqrt(squaredDistance(*sent.sent, *other.sent, here, here)));
+  }
+  return sum / static_cast<double>(sent.scatter.size());
+}
+
+vpLedIdPair pairOf(const Seen &a, const Seen &b)
+{
+  vpLedIdPair pair;
+  double squared = squaredDistance(*a.sent, *b.sent, a.doubt, b.doubt);
+  if (a.sent->kind == vpModulation::Kind::word) {
+    pair.chips = static_cast<int>(vpWordCode(a.chips).distance(vpWordCode(b.chips)));
+    squared += std::pow(std::min(a.chipDistance, b.chipDistance), 2) * pair.chips;
+  }
+  pair.distance = std::sqrt(squared);
+  pair.error = a.scatter.empty() ? vpNormalTail(0.5 * pair.distance) : std::max(errorOf(a, b), errorOf(b, a));
+  return pair;
+}
+
+Seen seenWord(const vpStripePrediction &prediction, const vpLamp &lamp, double lines)
+{
+  const vpModulation &sent = lamp.modulation;
+  Seen seen{&sent, {}, {}, 0, sent.chips()};
+  if (seen.chips.size() > vpWordCode::mostChips) {
+    throw vpException(vpException::badValue,
+                      "lamp " + vpShown(lamp.id) + ": a word of " + std::to_string(seen.chips.size()) +
+                          " chips, expected at most " + std::to_string(vpWordCode::mostChips));
+  }
+  // Its chips tell the rate at which it repeats as a pulse of the rate of two chips tells its own.
+  vpModulation chips;
+  chips.kind = vpModulation::Kind::pwm;
+  chips.frequency = 0.5 * sent.chipRate;
+  const auto length = static_cast<double>(seen.chips.size());
+  seen.doubt.frequency = prediction.doubt(chips, lines, lamp.oscillatorPpm).frequency * 2 / length;
+  seen.chipDistance = 2 * prediction.contrast(chips.frequency) * std::sqrt(lines / length) /
+                      (prediction.lineNoise(0.5) * prediction.margin);
+  return seen;
+}
+} // namespace
+
+double vpLedIdPlanner::linesOf(const vpLamp &lamp, double height, double size) const
+{
+  const double own = std::isnan(lamp.size) ? size : lamp.size;
+  const double above = std::isnan(height) ? lamp.position.z() - m_cameraHeight : height;
+  if (std::isnan(own)) {
+    throw vpException(vpException::badValue,
+                      "lamp " + vpShown(lamp.id) + ": no size, expected one in the map");
+  }
+  if (!(above > 0)) {
+    throw vpException(vpException::badValue, "lamp " + vpShown(lamp.id) + ": " + vpNumberText(above) +
+                                                 " m above the camera, expected more than 0");
+  }
+  return prediction.lines(own, above);
+}
+
+std::vector<vpLedIdPair> vpLedIdPlanner::confusion(const vpLampMap &map, double height, double size) const
+{
+  std::vector<Seen> all;
+  for (const vpIdentifier &identifier : map.identifiers()) {
+    double lines = prediction.pictureLines();
+    for (const size_t lamp : identifier.lamps) {
+      lines = std::min(lines, linesOf(map.lamps[lamp], height, size));
+    }
+    const vpLamp &lamp = map.lamps[identifier.lamps.front()];
+    all.push_back(lamp.modulation.kind == vpModulation::Kind::word
+                      ? seenWord(prediction, lamp, lines)
+                      : Seen{&lamp.modulation,
+                             prediction.doubt(lamp.modulation, lines, lamp.oscillatorPpm),
+                             prediction.scatter(lamp.modulation, lines, lamp.oscillatorPpm),
+                             0,
+                             {}});
+  }
+  std::vector<vpLedIdPair> pairs;
+  for (size_t i = 0; i < all.size(); ++i) {
+    for (size_t j = i + 1; j < all.size(); ++j) {
+      if (comparable(all[i], all[j])) {
+        pairs.push_back(pairOf(all[i], all[j]));
+        pairs.back().first = i;
+        pairs.back().second = j;
+      }
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(), [](const vpLedIdPair &a, const vpLedIdPair &b) {
+    return std::make_pair(-a.error, a.distance) < std::make_pair(-b.error, b.distance);
+  });
+  return pairs;
+}
+
+std::vector<vpLedIdReuse> vpLedIdPlanner::reuse(const vpLampMap &map)
+{
+  std::vector<vpLedIdReuse> shared;
+  const std::vector<vpIdentifier> identifiers = map.identifiers();
+  for (size_t i = 0; i < identifiers.size(); ++i) {
+    const std::vector<size_t> &lamps = identifiers[i].lamps;
+    vpLedIdReuse nearest{i, 0, 0, std::numeric_limits<double>::infinity()};
+    for (size_t j = 0; j < lamps.size(); ++j) {
+      for (size_t k = j + 1; k < lamps.size(); ++k) {
+        const double apart = (map.lamps[lamps[j]].position - map.lamps[lamps[k]].position).norm();
+        if (apart < nearest.apart) {
+          nearest = {i, lamps[j], lamps[k], apart};
+        }
+      }
+    }
+    if (lamps.size() > 1) {
+      shared.push_back(nearest);
+    }
+  }
+  std::stable_sort(shared.begin(), shared.end(),
+                   [](const vpLedIdReuse &a, const vpLedIdReuse &b) { return a.apart < b.apart; });
+  return shared;
+}
+
+END_VISP_NAMESPACE

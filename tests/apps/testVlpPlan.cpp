@@ -1,0 +1,208 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// vlp-plan, run as a user runs it.
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_core/vpLampMap.h>
+
+#include "common/vpProcess.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+constexpr int done = 0, badInput = 2, nothingFound = 3;
+
+const std::string rig = std::string(VLP_DATA_DIR) + "/rigs/ub300-800x600.yaml";
+const std::string hall = std::string(VLP_DATA_DIR) + "/lamps/hall.yaml";
+
+class VlpPlan : public testing::Test
+{
+protected:
+  //! These arguments behind those of a small plan.
+  static std::vector<std::string> with(const std::vector<std::string> &more)
+  {
+    std::vector<std::string> arguments = {"--rig", rig, "--heights", "1.2:1.5", "--diameter", "0.175"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  //! Expects one line on stderr with all of \e parts, nothing on stdout, and no file `out`.
+  void expectOneLine(const std::vector<std::string> &arguments, int code,
+                     const std::vector<std::string> &parts) const
+  {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    vpProcess plan("vlp-plan", arguments);
+    EXPECT_EQ(plan.wait(), code);
+    const std::string line = plan.err();
+    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
+    EXPECT_EQ(line.rfind("vlp-plan: error: ", 0), 0u) << line;
+    for (const std::string &part : parts) {
+      EXPECT_NE(line.find(part), std::string::npos) << "  line:     " << line << "  expected: " << part;
+    }
+    EXPECT_EQ(plan.out(), "");
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  }
+
+  vpTemporaryFolder folder;
+};
+} // namespace
+
+TEST_F(VlpPlan, HelpHasExamplesAndExitCodes)
+{
+  vpProcess help("vlp-plan", {"--help"});
+  EXPECT_EQ(help.wait(), done);
+  for (const char *part : {"Examples:", "--heights FROM:TO", "above the camera, not above the floor",
+                           "--check FILE", "Exit code: 0 done; 2 bad usage"}) {
+    EXPECT_NE(help.out().find(part), std::string::npos) << part;
+  }
+}
+
+TEST_F(VlpPlan, WritesAMapThatReadsBack)
+{
+  vpProcess plan("vlp-plan", with({"--lamps", "20", "--out", folder / "out"}));
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+  EXPECT_EQ(plan.err(), "");
+  EXPECT_NE(plan.out().find("chosen                                                   20"), std::string::npos)
+      << plan.out();
+  EXPECT_EQ(folder.read("out").rfind("# Placeholder positions", 0), 0u);
+  const vpLampMap map = vpLampMap::load(folder / "out");
+  ASSERT_EQ(map.lamps.size(), 20u);
+  EXPECT_EQ(map.identifiers().size(), 20u);
+  std::set<std::pair<double, double>> places;
+  for (const vpLamp &lamp : map.lamps) {
+    EXPECT_EQ(lamp.size, 0.175);
+    EXPECT_NEAR(lamp.position.z(), 1.5 + 0.19, 1e-9);
+    places.insert({lamp.position.x(), lamp.position.y()});
+  }
+  EXPECT_EQ(places.size(), 20u);
+  EXPECT_EQ(folder.count(), 1u); // nothing temporary stays
+
+  vpProcess check("vlp-plan", {"--rig", rig, "--check", folder / "out", "--worst", "3"});
+  EXPECT_EQ(check.wait(), done) << check.err();
+  EXPECT_NE(check.out().find("(3 of 190)"), std::string::npos) << check.out();
+  EXPECT_NE(check.out().find("  0 nearer than an error of 0.001"), std::string::npos);
+}
+
+TEST_F(VlpPlan, KeepsPlacesAndIds)
+{
+  const std::string csv = folder.write("places.csv", "id,x_m,y_m,z_m\nhall,1,2,1.6\ndoor,-1,0.5,1.5\n");
+  vpProcess plan("vlp-plan", {"--rig", rig, "--place", csv, "--diameter", "0.2", "--oscillator", "rc",
+                              "--out", folder / "out"});
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+  const vpLampMap map = vpLampMap::load(folder / "out");
+  ASSERT_EQ(map.lamps.size(), 2u);
+  EXPECT_EQ(map.lamps[1].id, "door");
+  EXPECT_EQ(map.lamps[1].position, Eigen::Vector3d(-1, 0.5, 1.5));
+  EXPECT_EQ(map.lamps[1].oscillatorPpm, 10000);
+  EXPECT_EQ(folder.read("out").rfind("lamps:", 0), 0u);
+
+  vpProcess again("vlp-plan", {"--rig", rig, "--place", hall, "--out", folder / "hall.yaml"});
+  EXPECT_EQ(again.wait(), done) << again.err();
+  const vpLampMap before = vpLampMap::load(hall), after = vpLampMap::load(folder / "hall.yaml");
+  ASSERT_EQ(after.lamps.size(), before.lamps.size());
+  for (size_t i = 0; i < before.lamps.size(); ++i) {
+    EXPECT_EQ(after.lamps[i].id, before.lamps[i].id);
+    EXPECT_EQ(after.lamps[i].position, before.lamps[i].position);
+    EXPECT_EQ(after.lamps[i].size, before.lamps[i].size);
+  }
+}
+
+TEST_F(VlpPlan, PlansWords)
+{
+  vpProcess plan("vlp-plan", with({"--words", "--lamps", "6", "--bits", "10", "--out", folder / "out"}));
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+  const vpLampMap map = vpLampMap::load(folder / "out");
+  ASSERT_EQ(map.lamps.size(), 6u);
+  EXPECT_EQ(map.identifiers().size(), 6u);
+  for (const vpLamp &lamp : map.lamps) {
+    EXPECT_EQ(lamp.modulation.bits.rfind("011110", 0), 0u);
+    EXPECT_EQ(lamp.modulation.bits.size(), 10u);
+  }
+}
+
+TEST_F(VlpPlan, DrawsThePicture)
+{
+  vpProcess plan("vlp-plan", with({"--frequencies", "500:1200", "--picture", folder / "capacity.png"}));
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+  EXPECT_EQ(folder.read("capacity.png").substr(0, 4), "\x89PNG");
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST_F(VlpPlan, ReportsReuse)
+{
+  const std::string map = folder.write("map.yaml", R"(lamps:
+  - {id: A, position_m: [0, 0, 1.7], diameter_m: 0.175, frequency_hz: 1000, duty: 0.5}
+  - {id: B, position_m: [3, 4, 1.7], diameter_m: 0.175, frequency_hz: 1000, duty: 0.5}
+)");
+  vpProcess check("vlp-plan", {"--rig", rig, "--check", map});
+  EXPECT_EQ(check.wait(), done) << check.err();
+  EXPECT_NE(check.out().find("Identifiers that lamps share (1)"), std::string::npos) << check.out();
+  EXPECT_NE(check.out().find("1000 Hz, 0.5      2                A  B        5"), std::string::npos)
+      << check.out();
+}
+
+TEST_F(VlpPlan, WhatTheRigCannotHoldIsSaid)
+{
+  const std::string out = folder / "out";
+  expectOneLine(with({"--lamps", "5000", "--out", out}), nothingFound,
+                {"--lamps: 5000, expected at most the "});
+  expectOneLine({"--rig", rig, "--heights", "30", "--diameter", "0.175", "--out", out}, nothingFound,
+                {"no frequency is left"});
+  expectOneLine(with({"--words", "--chip-rate", "1000", "--out", out}), nothingFound,
+                {"a word takes 254 lines, the smallest lamp has 56"});
+  const std::string one = folder.write(
+      "one.yaml", "lamps:\n  - {id: A, position_m: [0, 0, 2], diameter_m: 0.2, unmodulated: true}\n");
+  expectOneLine({"--rig", rig, "--check", one}, nothingFound, {"one.yaml: no two lamps that blink alike"});
+}
+
+TEST_F(VlpPlan, BadUsageIsOneClearLine)
+{
+  const std::string out = folder / "out";
+  expectOneLine({}, badInput, {"--rig: nothing, expected"});
+  expectOneLine({"--rig", rig}, badInput, {"--heights: nothing, expected", "--place"});
+  expectOneLine({"--rig", rig, "--heights", "1.5"}, badInput, {"--diameter: nothing, expected"});
+  for (const std::string heights : {"0:1", "2:1", "1:2:3", "a:b", "1:", "-1:2", "nan"}) {
+    expectOneLine({"--rig", rig, "--diameter", "0.1", "--heights=" + heights}, badInput,
+                  {"--heights: " + heights + ", expected FROM:TO"});
+  }
+  expectOneLine(with({"--oscillator", "quartz"}), badInput,
+                {"--oscillator: quartz, expected crystal (50 ppm)"});
+  for (const std::string duties : {"0.5,1", "0", "0.2,0.2", "0.2,,0.5", "half"}) {
+    expectOneLine(with({"--duties", duties}), badInput, {"--duties: " + duties + ", expected up to 8"});
+  }
+  expectOneLine(with({"--error", "0"}), badInput, {"--error: 0, expected a probability"});
+  expectOneLine(with({"--snr-db", "much"}), badInput, {"--snr-db: much, expected a number of dB"});
+  expectOneLine(with({"--lamps", "-1"}), badInput, {"--lamps"});
+  expectOneLine(with({"--picture", folder / "capacity.jpg"}), badInput, {"--picture: ", "ends in .png"});
+  expectOneLine(with({"--bits", "14"}), badInput, {"--bits", "--words"});
+  expectOneLine(with({"--words", "--bits", "40"}), badInput, {"bits: 40, expected 7 to 18"});
+  expectOneLine(with({"--words", "--header", "01x"}), badInput, {"header: \"01x\", expected"});
+  expectOneLine(with({"--check", hall, "--out", out}), badInput, {"--check: with --out"});
+  expectOneLine(with({"--place", hall, "--lamps", "3"}), badInput, {"--lamps: with --place"});
+  expectOneLine(with({"--place", hall, "--out", hall}), badInput, {"--out: ", "which is an input"});
+}
+
+TEST_F(VlpPlan, BadFilesAreOneClearLine)
+{
+  const std::string none = folder / "none.yaml";
+  expectOneLine({"--rig", none, "--heights", "1", "--diameter", "0.1"}, badInput,
+                {"none.yaml: cannot be opened"});
+  expectOneLine({"--rig", rig, "--check", none}, badInput, {"none.yaml: cannot be opened"});
+  const std::string twice = folder.write("twice.csv", "id,x_m,y_m,z_m\nA,0,0,2\nA,1,1,2\n");
+  expectOneLine({"--rig", rig, "--place", twice, "--diameter", "0.1"}, badInput,
+                {"twice.csv:3: id: A, expected"});
+  const std::string low = folder.write("low.csv", "id,x_m,y_m,z_m\nA,0,0,0.1\n");
+  expectOneLine({"--rig", rig, "--place", low}, badInput, {"--diameter: nothing, expected", "lamp A"});
+  expectOneLine({"--rig", rig, "--place", low, "--diameter", "0.1"}, badInput,
+                {"low.csv: lamp A: -0.09 m above the camera"});
+  expectOneLine(with({"--lamps", "3", "--out", "/proc/none/lamps.yaml"}), badInput, {"/proc/none"});
+}
