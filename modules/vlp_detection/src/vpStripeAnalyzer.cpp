@@ -12,6 +12,7 @@
 #include "vpOutlineModel.h"
 #include "vpStripeStarts.h"
 #include "vpWaveformFit.h"
+#include "vpWordSearch.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -135,6 +136,46 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
   }
 }
 
+/*!
+  A word in place of what leaves \e unexplained of the stripes' power. It has many chips to choose: it has to
+  explain as much more as their number asks for (Schwarz 1978). One of a format that the map does not know is
+  sought only where neither pwm nor twoPulse explains the stripes at all.
+*/
+std::optional<vpWordSearch::Found> findWord(const vpWordSearch &search, const vpStripeAnalyzer &analyzer,
+                                            double unexplained, size_t lines)
+{
+  static const double wordMisfit = 0.1;
+  std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
+  if (!word && !(unexplained < analyzer.maxMisfit)) {
+    word = search.blind(wordMisfit);
+  }
+  if (!word || vpWordSearch::singlePulse(word->word.chips)) {
+    return std::nullopt;
+  }
+  static const double noise = 0.005; // share of the power that no comparison goes below
+  static const double clearly = 10;
+  const auto n = static_cast<double>(lines);
+  const double gain = n * std::log((unexplained + noise) / (word->word.misfit + noise));
+  const double price = 2 * M_LN2 * static_cast<double>(word->word.chips.size());
+  return !(gain < price + clearly) ? word : std::nullopt;
+}
+
+//! What was fitted is not what it sends: a word is, where it is known.
+void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Found> &found)
+{
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  features.signal = vpStripeFeatures::Signal::coded;
+  features.frequency = features.frequencySigma = features.duty = features.dutySigma = none;
+  features.phaseDifference = features.phaseDifferenceSigma = none;
+  if (found) {
+    features.chips = vpWordFit::canonical(found->word.chips);
+    features.chipsConfidence = found->confidence;
+    features.frequency = 1 / (found->word.chip * static_cast<double>(features.chips.size()));
+    features.frequencySigma = found->durationSigma * features.frequency;
+    features.misfit = found->word.misfit;
+  }
+}
+
 } // namespace
 
 vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
@@ -235,11 +276,17 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   if (periods < leastPeriods || (periods < manyPeriods && !pulses) || profile.time.size() < leastLines) {
     features.frequencySigma = std::max(features.frequencySigma, features.frequency);
   }
-  if (!(features.misfit < maxMisfit)) {
-    features.signal = vpStripeFeatures::Signal::coded;
-    const double none = std::numeric_limits<double>::quiet_NaN(); // what was fitted is not what it sends
-    features.frequency = features.frequencySigma = features.duty = features.dutySigma = none;
-    features.phaseDifference = features.phaseDifferenceSigma = none;
+  static const double beyondDoubt = 0.04;
+  if (!(features.misfit < beyondDoubt)) {
+    vpWordFit::Settings wordSettings;
+    wordSettings.envelopeOrder = settings.envelopeOrder;
+    wordSettings.modelError = modelError;
+    wordSettings.exposureTolerance = exposureTolerance;
+    const vpWordSearch search(profile, wordSettings, envelope);
+    const std::optional<vpWordSearch::Found> word = findWord(search, *this, features.misfit, profile.time.size());
+    if (word || !(features.misfit < maxMisfit)) {
+      takeCoded(features, word);
+    }
   }
   return features;
 }

@@ -31,6 +31,13 @@ struct VISP_EXPORT vpStripeProfile {
                                const vpOutlineFit &fit, const vpLedRoi &roi);
 };
 
+//! How the words of a map's lamps are sent: what is known of a word before its chips are.
+struct VISP_EXPORT vpWordFormat {
+  size_t chips = 0;     // of one repetition
+  double chipRate = 0;  // Hz
+  double tolerance = 0; // of the chip rate as the camera sees it, standard deviation as a share of it
+};
+
 /*!
   What the stripes say: maximum likelihood over the line profile, and the posterior about it.
 
@@ -53,6 +60,8 @@ public:
   double minModulation = 0.05; // depth of stripes below which a lamp counts as unmodulated
   bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
   double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
+
+  std::vector<vpWordFormat> words; // that lamps of the map send; words of other formats are found more rarely
 
   //! Signal, frequency, duty, phase difference, stripes, modulation, misfit; area is left to the caller.
   vpStripeFeatures analyze(const vpStripeProfile &profile) const;
