@@ -19,9 +19,9 @@ double vpChipTrellis::least(std::vector<char> *chips) const
   return least(chips, none, 0);
 }
 
-double vpChipTrellis::leastWithout(size_t k, bool value) const
+double vpChipTrellis::leastWithout(size_t k, bool value, std::vector<char> *chips) const
 {
-  return least(nullptr, k, value ? 1 : 0);
+  return least(chips, k, value ? 1 : 0);
 }
 
 double vpChipTrellis::least(std::vector<char> *chips, size_t barred, size_t barredValue) const

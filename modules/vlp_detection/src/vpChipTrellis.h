@@ -34,7 +34,7 @@ public:
   double least(std::vector<char> *chips = nullptr) const;
 
   //! Least cost of all words whose chip \e k is not \e value.
-  double leastWithout(size_t k, bool value) const;
+  double leastWithout(size_t k, bool value, std::vector<char> *chips = nullptr) const;
 
 private:
   static constexpr size_t none = static_cast<size_t>(-1);

@@ -145,11 +145,17 @@ std::optional<vpWordSearch::Found> findWord(const vpWordSearch &search, const vp
                                             double unexplained, size_t lines)
 {
   static const double wordMisfit = 0.1;
+  static const double explained = 2; // chi-square per degree of freedom
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
-  if (!word && !(unexplained < analyzer.maxMisfit)) {
-    word = search.blind(wordMisfit);
+  const bool stranger = !word || word->inflation > explained;
+  if (stranger && !(unexplained < analyzer.maxMisfit)) {
+    const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
+    if (!word || (other && other->inflation < 0.5 * word->inflation)) {
+      word = other;
+    }
   }
-  if (!word || vpWordSearch::singlePulse(word->word.chips)) {
+  if (!word || word->confidence < analyzer.minWordConfidence ||
+      vpWordSearch::singlePulse(word->word.chips)) {
     return std::nullopt;
   }
   static const double noise = 0.005; // share of the power that no comparison goes below

@@ -13,6 +13,11 @@
 
 BEGIN_VISP_NAMESPACE
 
+namespace
+{
+const double drift = 0.25; // chips, at the profile's ends between neighbours of a grid of durations
+} // namespace
+
 std::string vpWordFit::canonical(const std::vector<char> &chips)
 {
   std::string word, greatest;
@@ -33,24 +38,30 @@ double vpWordFit::cost(const Word &word) const
   return n * std::log1p(word.chiSquare / n) + 2 * M_LN2 * bits * static_cast<double>(word.chips.size());
 }
 
-//! Words on a grid of phases at one duration of a chip, with exposure and saturation as stated and otherwise.
-void vpWordFit::grid(size_t chips, double chip, std::vector<Word> &found) const
+vpWordFit::Word vpWordFit::plain(size_t chips, double chip) const
+{
+  Word word;
+  word.chips.assign(chips, 0);
+  word.chip = chip;
+  word.exposure = m_profile->exposure;
+  word.light[0] = m_dark;
+  word.light[1] = 1;
+  return word;
+}
+
+//! Chi-square of words on a grid of phases, with exposure and gain as given and with more of both.
+void vpWordFit::grid(const Word &about, std::vector<Word> &found) const
 {
   static const int phases = 8;
-  static const double saturated = 1.35, blurred = 2;
-  for (int k = 0; k < 4 * phases; ++k) {
-    Word word;
-    word.chips.assign(chips, 0);
-    word.chip = chip;
-    word.phase = static_cast<double>(k / 4) / phases;
+  static const double blurred = 1.8, saturated = 1.15;
+  const Light light = lightOf(about);
+  for (int k = 0; k < 2 * phases; ++k) {
+    Word word = about;
+    word.phase = static_cast<double>(k / 2) / phases;
+    word.exposure *= k % 2 == 0 ? 1 : blurred;
     word.gain = k % 2 == 0 ? 1 : saturated;
-    word.exposure = m_profile->exposure * (k % 4 < 2 ? 1 : blurred);
-    word.light[0] = m_dark;
-    word.light[1] = 1;
-    word.chiSquare = decode(word);
-    if (word.chiSquare < 1e299) {
-      found.push_back(std::move(word));
-    }
+    word.chiSquare = least(word, light, nullptr);
+    found.push_back(std::move(word));
   }
 }
 
@@ -64,6 +75,9 @@ std::vector<vpWordFit::Word> vpWordFit::refined(std::vector<Word> &grid, size_t 
   for (Word &word : grid) {
     if (words.size() == count || tried.size() == 2 * count) {
       break;
+    }
+    if (least(word, lightOf(word), &word.chips) > 1e299) {
+      continue;
     }
     std::string start = canonical(word.chips);
     if (std::find(tried.begin(), tried.end(), start) != tried.end()) {
@@ -81,30 +95,46 @@ std::vector<vpWordFit::Word> vpWordFit::refined(std::vector<Word> &grid, size_t 
   return words;
 }
 
-std::vector<vpWordFit::Word> vpWordFit::words(const Range &range, size_t count) const
+std::vector<vpWordFit::Word> vpWordFit::words(size_t chips, double chip, double tolerance, size_t count) const
 {
-  static const double drift = 0.25; // chips, at the profile's ends between neighbours of the grid
-  const double step = drift * range.chip / m_half;
-  const int steps = std::max(1, static_cast<int>(std::ceil(range.tolerance / step)));
-  std::vector<Word> grid;
-  for (size_t chips = range.fewest; chips <= range.most; ++chips) {
-    for (int k = -steps; k <= steps; ++k) {
-      this->grid(chips, range.chip * (1 + range.tolerance * k / steps), grid);
-    }
+  const double step = drift * chip / m_half;
+  const int steps = std::max(1, static_cast<int>(std::ceil(tolerance / step)));
+  std::vector<Word> found;
+  for (int k = -steps; k <= steps; ++k) {
+    grid(plain(chips, chip * (1 + tolerance * k / steps)), found);
   }
-  return refined(grid, count);
+  return refined(found, count);
 }
 
 std::vector<vpWordFit::Word> vpWordFit::durations(double shortest, double longest, size_t count) const
 {
-  static const double drift = 0.25; // chips
-  std::vector<Word> grid;
+  std::vector<Word> found;
   for (double chip = shortest; chip <= longest; chip *= 1 + drift * chip / m_half) {
     // A ring longer than the profile does not close.
-    const size_t chips = static_cast<size_t>(std::ceil(span() / chip)) + vpChipTrellis::widestWindow;
-    this->grid(chips, chip, grid);
+    grid(plain(static_cast<size_t>(std::ceil(span() / chip)) + vpChipTrellis::widestWindow, chip), found);
   }
-  return refined(grid, count);
+  return refined(found, count);
+}
+
+std::vector<vpWordFit::Word> vpWordFit::repeating(const Word &start, size_t fewest, size_t most,
+                                                  size_t count) const
+{
+  // Repetition tells the duration better than the start does.
+  static const std::array<double, 5> atTheEnds{-0.4, -0.2, 0, 0.2, 0.4};  // chips
+  static const std::array<double, 3> atTheMiddle{-0.15, 0, 0.15};
+  const Light light = lightOf(start);
+  std::vector<Word> found;
+  for (size_t chips = fewest; chips <= most; ++chips) {
+    for (double later : atTheMiddle) {
+      for (double more : atTheEnds) {
+        Word word = moved(start, {later, more, 0, 0});
+        word.chips.assign(chips, 0);
+        word.chiSquare = least(word, light, nullptr);
+        found.push_back(std::move(word));
+      }
+    }
+  }
+  return refined(found, count);
 }
 
 double vpWordFit::inflation(const Word &word) const
@@ -117,23 +147,29 @@ double vpWordFit::confidence(const Word &word, const std::vector<Word> &others, 
 {
   const int width = window(word);
   vpChipTrellis trellis(word.chips.size(), width);
-  if (width > vpChipTrellis::widestWindow || !fill(trellis, word, width)) {
+  if (width > vpChipTrellis::widestWindow || !fill(trellis, word, lightOf(word), width)) {
     return 0;
   }
-  const double least = trellis.least();
+  std::vector<std::string> counted{canonical(word.chips)};
   double odds = 0;
-  for (size_t k = 0; k < word.chips.size(); ++k) {
-    // Phase and light would follow other chips a little.
-    static const double following = 0.7;
-    const double more = trellis.leastWithout(k, word.chips[k] != 0) - least;
-    odds += std::exp(-0.5 * following * more / inflation);
-  }
-  const std::string chips = canonical(word.chips);
-  for (const Word &other : others) {
-    if (canonical(other.chips) != chips) {
+  auto count = [&](const Word &other) {
+    std::string chips = canonical(other.chips);
+    if (std::find(counted.begin(), counted.end(), chips) == counted.end()) {
       odds += std::exp(-0.5 * (other.chiSquare - word.chiSquare) / inflation);
+      counted.push_back(std::move(chips));
+    }
+  };
+  const double least = trellis.least();
+  for (size_t k = 0; k < word.chips.size(); ++k) {
+    static const double unlikely = 40; // times its chi-square: whatever follows, it does not count
+    Word other = word;
+    const double more = trellis.leastWithout(k, word.chips[k] != 0, &other.chips) - least;
+    if (more < unlikely * inflation) {
+      descend(other); // phase, light and the rest follow other chips
+      count(other);
     }
   }
+  std::for_each(others.begin(), others.end(), count);
   return 1 / (1 + odds);
 }
 

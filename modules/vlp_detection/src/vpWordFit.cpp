@@ -80,46 +80,58 @@ bool vpWordFit::touch(size_t line, const Word &word, Touch &touched) const
   return true;
 }
 
-//! Cost of every pattern of the chips that each line touches, with the word's light.
-bool vpWordFit::fill(vpChipTrellis &trellis, const Word &word, int window) const
+vpWordFit::Light vpWordFit::lightOf(const Word &word) const
+{
+  Light light{word.light[0], m_given, m_given};
+  for (size_t i = 0; i < m_given.size(); ++i) {
+    const double y = (m_profile->time[i] - m_middle) / m_half;
+    double sum = 0;
+    for (int k = m_linear - 2; k >= 1; --k) {
+      sum = sum * y + word.light[static_cast<size_t>(k)];
+    }
+    light.envelope[i] *= sum;
+    light.bend[i] *= std::clamp(word.light[bendPlace], -mostBend * std::abs(sum), mostBend * std::abs(sum));
+  }
+  return light;
+}
+
+//! Cost of every pattern of the chips that each line touches.
+bool vpWordFit::fill(vpChipTrellis &trellis, const Word &word, const Light &light, int window) const
 {
   const auto n = static_cast<long>(word.chips.size());
+  const size_t patterns = size_t{1} << window;
   Touch touched;
   std::array<double, size_t{1} << vpChipTrellis::widestWindow> share{};
   for (size_t i = 0; i < m_weight.size(); ++i) {
+    touched.share.fill(0);
     if (!touch(i, word, touched) || touched.count > window) {
       return false;
     }
-    const double y = (m_profile->time[i] - m_middle) / m_half;
-    double envelope = 0;
-    for (int k = m_linear - 2; k >= 1; --k) {
-      envelope = envelope * y + word.light[static_cast<size_t>(k)];
+    for (size_t j = 0, bit = 1; bit < patterns; ++j, bit <<= 1) {
+      for (size_t p = 0; p < bit; ++p) {
+        share[bit | p] = share[p] + touched.share[j];
+      }
     }
-    envelope *= m_given[i];
-    const double bend = std::clamp(word.light[bendPlace] * m_given[i], -mostBend * envelope, mostBend * envelope);
+    const double seen = m_profile->light[i] - light.offset;
     double *costs = trellis.costs(static_cast<size_t>(((touched.first % n) + n) % n));
-    for (size_t pattern = 0; pattern < size_t{1} << window; ++pattern) {
-      const size_t top = pattern == 0 ? 0 : static_cast<size_t>(63 - __builtin_clzll(pattern));
-      share[pattern] = pattern == 0 ? 0
-                       : share[pattern ^ (size_t{1} << top)] +
-                             (top < static_cast<size_t>(touched.count) ? touched.share[top] : 0);
-      const double s = std::min(1.0, word.gain * share[pattern]);
-      const double residual = m_profile->light[i] - word.light[0] - envelope * s - bend * s * (1 - s);
-      costs[pattern] += m_weight[i] * residual * residual;
+    for (size_t p = 0; p < patterns; ++p) {
+      const double s = std::min(1.0, word.gain * share[p]);
+      const double residual = seen - s * (light.envelope[i] + light.bend[i] * (1 - s));
+      costs[p] += m_weight[i] * residual * residual;
     }
   }
   return true;
 }
 
-//! The likeliest chips with the word's light. \return Chi-square.
-double vpWordFit::decode(Word &word) const
+//! Chi-square of the likeliest chips with that light. \param chips Where given, those.
+double vpWordFit::least(const Word &word, const Light &light, std::vector<char> *chips) const
 {
   const int width = window(word);
   if (width > vpChipTrellis::widestWindow || static_cast<int>(word.chips.size()) < width) {
     return 1e300;
   }
   vpChipTrellis trellis(word.chips.size(), width);
-  return fill(trellis, word, width) ? trellis.least(&word.chips) : 1e300;
+  return fill(trellis, word, light, width) ? trellis.least(chips) : 1e300;
 }
 
 //! What exposure and gain are off by what is likely, in standard deviations.
@@ -268,7 +280,7 @@ void vpWordFit::refine(Word &word) const
   for (int round = 0; round < 6; ++round) {
     descend(word);
     const std::vector<char> before = word.chips;
-    decode(word);
+    least(word, lightOf(word), &word.chips);
     if (word.chips == before) {
       break;
     }

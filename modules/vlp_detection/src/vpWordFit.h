@@ -52,14 +52,12 @@ public:
   //! \param envelope How bright the lamp is at each line while it is lit, about, grey levels.
   vpWordFit(const vpStripeProfile &profile, const Settings &settings, const std::vector<double> &envelope);
 
-  //! What to search: words of fewest to most chips, of durations about a mean.
-  struct Range {
-    size_t fewest, most;
-    double chip;      // s
-    double tolerance; // share of it, to either side
-  };
-  //! The likeliest words, the best first by cost(), of different chips each. \param count Words to fit.
-  std::vector<Word> words(const Range &range, size_t count) const;
+  //! The likeliest words of so many chips, the best first by cost(), of different chips each. \param chip s.
+  //! \param tolerance Share of it, to either side. \param count Words to fit.
+  std::vector<Word> words(size_t chips, double chip, double tolerance, size_t count) const;
+
+  //! The likeliest words of fewest to most chips, sent as \e start is.
+  std::vector<Word> repeating(const Word &start, size_t fewest, size_t most, size_t count) const;
 
   /*!
     The likeliest durations of a chip from \e shortest to \e longest s, whatever the chips: as words that the
@@ -107,15 +105,22 @@ private:
     std::array<double, vpChipTrellis::widestWindow> share;
   };
   bool touch(size_t line, const Word &word, Touch &touched) const;
-  bool fill(vpChipTrellis &trellis, const Word &word, int window) const;
+  //! Light at each line by its coefficients, grey levels.
+  struct Light {
+    double offset;
+    std::vector<double> envelope, bend;
+  };
+  Light lightOf(const Word &word) const;
+  bool fill(vpChipTrellis &trellis, const Word &word, const Light &light, int window) const;
   static int window(const Word &word);
-  double decode(Word &word) const;
+  double least(const Word &word, const Light &light, std::vector<char> *chips) const;
   double fitLight(Word &word, Eigen::VectorXd *residuals = nullptr) const;
   Eigen::Vector2d prior(const Word &word) const;
   Word moved(const Word &word, const Place &step) const;
   bool jacobian(const Word &word, double step, Eigen::VectorXd &residuals, Jacobian &J) const;
   void descend(Word &word) const;
-  void grid(size_t chips, double chip, std::vector<Word> &found) const;
+  Word plain(size_t chips, double chip) const;
+  void grid(const Word &about, std::vector<Word> &found) const;
   std::vector<Word> refined(std::vector<Word> &grid, size_t count) const;
   void measureMisfit(Word &word) const;
 

@@ -13,7 +13,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double leastConfidence = 0.99; // that all chips are right, for a word to be given
 const size_t fewestChips = 6;        // of a word of unknown format: fewer hold no header and no identifier
 const size_t mostChips = 64;
 
@@ -89,18 +88,16 @@ std::optional<vpWordSearch::Found> vpWordSearch::known(const std::vector<vpWordF
     if (fit.span() < static_cast<double>(format.chips) * chip * (1 - tolerance)) {
       continue;
     }
-    const std::vector<Word> words = fit.words({format.chips, format.chips, chip, tolerance}, tried);
+    const std::vector<Word> words = fit.words(format.chips, chip, tolerance, tried);
     if (words.empty() || (best && fit.cost(best->word) < fit.cost(words.front()))) {
       continue;
     }
     const Word &word = words.front();
+    if (getenv("WD")) printf("known misfit %.3f chi2 %.1f infl %.2f conf %.4f exp %g gain %.2f bend %.2f chip %g next %.1f\n", word.misfit, word.chiSquare, fit.inflation(word), fit.confidence(word, words, fit.inflation(word)), word.exposure, word.gain, word.light[6]/word.light[1], word.chip, words.size()>1?words[1].chiSquare-word.chiSquare:-1);
     if (word.misfit < misfit && fit.span() >= static_cast<double>(format.chips) * word.chip) {
       const double inflation = fit.inflation(word);
-      best = Found{word, fit.confidence(word, words, inflation), fit.durationSigma(word, inflation)};
+      best = Found{word, fit.confidence(word, words, inflation), fit.durationSigma(word, inflation), inflation};
     }
-  }
-  if (best && best->confidence < leastConfidence) {
-    best.reset();
   }
   return best;
 }
@@ -160,9 +157,7 @@ std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
   std::vector<Word> words;
   for (const Word &start : once) {
     if (start.misfit < misfit) {
-      const double tolerance = 0.25 * start.chip / fit.span();
-      const size_t most = mostRepeating(start, fit.span());
-      for (Word &word : fit.words({fewestChips, most, start.chip, tolerance}, lengths)) {
+      for (Word &word : fit.repeating(start, fewestChips, mostRepeating(start, fit.span()), lengths)) {
         words.push_back(std::move(word));
       }
     }
@@ -178,11 +173,9 @@ std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
   const double inflation = fit.inflation(found.word);
   found.confidence =
       std::min(amongOthers(fit, found.word, words), fit.confidence(found.word, {}, inflation));
+  found.inflation = inflation;
   found.durationSigma = fit.durationSigma(found.word, inflation);
   if (getenv("WD")) printf("blind n %zu chip %g exp %g gain %.2f misfit %.3f infl %.1f cost %.1f conf %g %g %s\n", found.word.chips.size(), found.word.chip, found.word.exposure, found.word.gain, found.word.misfit, inflation, fit.cost(found.word),amongOthers(fit, found.word, words), fit.confidence(found.word, {}, inflation), vpWordFit::canonical(found.word.chips).c_str());
-  if (found.confidence < leastConfidence) {
-    return std::nullopt;
-  }
   return found;
 }
 

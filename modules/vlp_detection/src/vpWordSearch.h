@@ -20,6 +20,7 @@ public:
     vpWordFit::Word word;
     double confidence = 0;    // probability that all chips are right
     double durationSigma = 0; // of a chip, as a share of it
+    double inflation = 1;     // chi-square per degree of freedom
   };
 
   //! \param envelope As vpWordFit's.

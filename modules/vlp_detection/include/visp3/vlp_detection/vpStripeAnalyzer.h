@@ -61,6 +61,7 @@ public:
   bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
   double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
 
+  double minWordConfidence = 0.99; // probability that all chips of a word are right below which none is given
   std::vector<vpWordFormat> words; // that lamps of the map send; words of other formats are found more rarely
 
   //! Signal, frequency, duty, phase difference, stripes, modulation, misfit; area is left to the caller.
