@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <cstdio>
 #include <cstdlib>
 
@@ -34,6 +35,44 @@ size_t mostRepeating(const Word &word, double span)
   return static_cast<size_t>(std::max(0.0, most));
 }
 
+//! Lengths of the runs of equal chips round a word, from the first that begins in it; \e first where that is.
+std::vector<size_t> runsOf(const std::vector<char> &chips, size_t &first)
+{
+  const size_t n = chips.size();
+  std::vector<size_t> runs;
+  first = 0;
+  while (first < n && chips[first] == chips[(first + n - 1) % n]) {
+    ++first;
+  }
+  for (size_t k = first; k < first + n; ++k) {
+    if (k == first || chips[k % n] != chips[(k + n - 1) % n]) {
+      runs.push_back(0);
+    }
+    ++runs.back();
+  }
+  return runs;
+}
+
+//! The word with as long chips as its runs allow: two equal halves are one chip.
+Word coarsest(const Word &word)
+{
+  size_t first, divisor = 0;
+  for (size_t run : runsOf(word.chips, first)) {
+    divisor = std::gcd(divisor, run);
+  }
+  Word coarse = word;
+  if (divisor > 1 && divisor < word.chips.size()) {
+    const size_t n = word.chips.size();
+    coarse.chips.clear();
+    for (size_t k = 0; k < n; k += divisor) {
+      coarse.chips.push_back(word.chips[(first + k) % n]);
+    }
+    coarse.chip *= static_cast<double>(divisor);
+    coarse.phase = (word.phase - static_cast<double>(first)) / static_cast<double>(divisor);
+  }
+  return coarse;
+}
+
 //! Probability of a word beside others.
 double amongOthers(const vpWordFit &fit, const Word &word, const std::vector<Word> &others)
 {
@@ -52,27 +91,14 @@ double amongOthers(const vpWordFit &fit, const Word &word, const std::vector<Wor
 
 bool vpWordSearch::singlePulse(const std::vector<char> &chips)
 {
-  // All rises and all falls have equal distances.
-  std::vector<size_t> lit, dark;
-  const size_t n = chips.size();
-  for (size_t k = 0; k < n; ++k) {
-    if (chips[k] == 0 || chips[(k + n - 1) % n] != 0) {
-      continue; // no rise
+  size_t first;
+  const std::vector<size_t> runs = runsOf(chips, first);
+  for (size_t k = 2; k < runs.size(); ++k) {
+    if (runs[k] != runs[k - 2]) {
+      return false;
     }
-    size_t end = 1;
-    while (chips[(k + end) % n] != 0) {
-      ++end;
-    }
-    lit.push_back(end);
-    while (chips[(k + end) % n] == 0) {
-      ++end;
-    }
-    dark.push_back(end - lit.back());
   }
-  auto equal = [](const std::vector<size_t> &runs) {
-    return std::all_of(runs.begin(), runs.end(), [&runs](size_t run) { return run == runs.front(); });
-  };
-  return equal(lit) && equal(dark);
+  return true;
 }
 
 std::optional<vpWordSearch::Found> vpWordSearch::known(const std::vector<vpWordFormat> &formats,
@@ -102,23 +128,24 @@ std::optional<vpWordSearch::Found> vpWordSearch::known(const std::vector<vpWordF
   return best;
 }
 
-//! Of the stretches between crossings of half the envelope, s, roughly.
+//! Of the stretches between crossings of half the envelope that noise does not make, s, roughly.
 double vpWordSearch::shortestRun() const
 {
-  auto share = [this](size_t i) { return m_profile->light[i] / m_envelope[i]; };
+  static const double half = 0.5, sigmas = 4;
   double shortest = std::abs(m_profile->time.back() - m_profile->time.front()), begin = 0;
-  bool begun = false;
+  bool begun = false, lit = m_profile->light[0] > half * m_envelope[0];
   for (size_t i = 1; i < m_envelope.size(); ++i) {
-    const double before = share(i - 1), now = share(i);
-    if ((now > 0.5) == (before > 0.5)) {
+    // As far from the line before as noise does not reach, if not as far as the envelope.
+    const double rise = m_profile->light[i] - half * m_envelope[i];
+    const double margin = std::min(sigmas * m_profile->sigma[i], 0.3 * m_envelope[i]);
+    if (lit ? rise > -margin : rise < margin) {
       continue;
     }
-    const double way = (0.5 - before) / (now - before);
-    const double at = m_profile->time[i - 1] + way * (m_profile->time[i] - m_profile->time[i - 1]);
+    lit = !lit;
     if (begun) {
-      shortest = std::min(shortest, std::abs(at - begin));
+      shortest = std::min(shortest, std::abs(m_profile->time[i] - begin));
     }
-    begin = at;
+    begin = m_profile->time[i];
     begun = true;
   }
   return shortest;
@@ -168,7 +195,11 @@ std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
     return std::nullopt;
   }
   Found found;
-  found.word = *best;
+  found.word = coarsest(*best);
+  if (found.word.chips.size() < fewestChips) {
+    return std::nullopt;
+  }
+  fit.refine(found.word);
   words.insert(words.end(), once.begin(), once.end()); // it may be that nothing repeats
   const double inflation = fit.inflation(found.word);
   found.confidence =
