@@ -14,9 +14,48 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-const size_t bendPlace = 6;   // in Word::light
+const int bendPlace = 6;     // in Word::light
 const double brightest = 3;  // gain
 const double mostBend = 0.9; // beyond, more light would be seen as less
+
+//! The chips that a line's exposure touches, and its shares in them.
+class Touch
+{
+public:
+  Touch(const vpWordFit::Word &word)
+      : m_perSecond(1 / word.chip), m_phase(word.phase), m_width(std::max(word.exposure / word.chip, 1e-6)),
+        m_perChip(1 / m_width), m_chips(static_cast<long>(word.chips.size()))
+  {
+  }
+
+  //! \param time s, from the middle of the profile. \return False where it touches too many.
+  bool at(double time)
+  {
+    const double from = time * m_perSecond + m_phase - 0.5 * m_width, to = from + m_width;
+    long chip = static_cast<long>(from);
+    chip -= from < static_cast<double>(chip) ? 1 : 0; // std::floor is a call
+    long ring = chip % m_chips;
+    ring += ring < 0 ? m_chips : 0;
+    first = static_cast<size_t>(ring);
+    share.fill(0);
+    double begin = from, end = static_cast<double>(chip + 1);
+    for (count = 0; begin < to; ++count, begin = end, end += 1) {
+      if (count == vpChipTrellis::widestWindow) {
+        return false;
+      }
+      share[static_cast<size_t>(count)] = (std::min(to, end) - begin) * m_perChip;
+    }
+    return true;
+  }
+
+  size_t first = 0; // in the word
+  int count = 0;
+  std::array<double, vpChipTrellis::widestWindow> share{};
+
+private:
+  double m_perSecond, m_phase, m_width, m_perChip;
+  long m_chips;
+};
 
 double quantile(std::vector<double> values, double share)
 {
@@ -53,6 +92,7 @@ vpWordFit::vpWordFit(const vpStripeProfile &profile, const Settings &settings,
     // A dark line has some light of its neighbours, by blur and compression.
     static const double spill = 0.01; // share of theirs, standard deviation
     const double missed = std::hypot(m_settings.modelError * profile.light[i], spill * m_given[i]);
+    m_time.push_back(profile.time[i] - m_middle);
     m_weight.push_back(1 / (profile.sigma[i] * profile.sigma[i] + missed * missed));
   }
 }
@@ -62,29 +102,11 @@ int vpWordFit::window(const Word &word)
   return std::max(2, static_cast<int>(std::ceil(word.exposure / word.chip - 1e-9)) + 1);
 }
 
-bool vpWordFit::touch(size_t line, const Word &word, Touch &touched) const
-{
-  const double width = std::max(word.exposure / word.chip, 1e-6);
-  const double from = (m_profile->time[line] - m_middle) / word.chip + word.phase - 0.5 * width;
-  const double to = from + width;
-  const double first = std::floor(from);
-  touched.first = static_cast<long>(first);
-  touched.count = 0;
-  for (double edge = first; edge < to; edge += 1) {
-    if (touched.count == vpChipTrellis::widestWindow) {
-      return false;
-    }
-    touched.share[static_cast<size_t>(touched.count++)] =
-        (std::min(to, edge + 1) - std::max(from, edge)) / width;
-  }
-  return true;
-}
-
 vpWordFit::Light vpWordFit::lightOf(const Word &word) const
 {
   Light light{word.light[0], m_given, m_given};
   for (size_t i = 0; i < m_given.size(); ++i) {
-    const double y = (m_profile->time[i] - m_middle) / m_half;
+    const double y = m_time[i] / m_half;
     double sum = 0;
     for (int k = m_linear - 2; k >= 1; --k) {
       sum = sum * y + word.light[static_cast<size_t>(k)];
@@ -98,13 +120,11 @@ vpWordFit::Light vpWordFit::lightOf(const Word &word) const
 //! Cost of every pattern of the chips that each line touches.
 bool vpWordFit::fill(vpChipTrellis &trellis, const Word &word, const Light &light, int window) const
 {
-  const auto n = static_cast<long>(word.chips.size());
   const size_t patterns = size_t{1} << window;
-  Touch touched;
+  Touch touched(word);
   std::array<double, size_t{1} << vpChipTrellis::widestWindow> share{};
   for (size_t i = 0; i < m_weight.size(); ++i) {
-    touched.share.fill(0);
-    if (!touch(i, word, touched) || touched.count > window) {
+    if (!touched.at(m_time[i]) || touched.count > window) {
       return false;
     }
     for (size_t j = 0, bit = 1; bit < patterns; ++j, bit <<= 1) {
@@ -113,7 +133,7 @@ bool vpWordFit::fill(vpChipTrellis &trellis, const Word &word, const Light &ligh
       }
     }
     const double seen = m_profile->light[i] - light.offset;
-    double *costs = trellis.costs(static_cast<size_t>(((touched.first % n) + n) % n));
+    double *costs = trellis.costs(touched.first);
     for (size_t p = 0; p < patterns; ++p) {
       const double s = std::min(1.0, word.gain * share[p]);
       const double residual = seen - s * (light.envelope[i] + light.bend[i] * (1 - s));
@@ -145,63 +165,47 @@ Eigen::Vector2d vpWordFit::prior(const Word &word) const
 //! Offset, envelope and bend by least squares with the word's chips. \return Chi-square.
 double vpWordFit::fitLight(Word &word, Eigen::VectorXd *residuals) const
 {
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7>;
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1>;
-  const auto n = static_cast<long>(word.chips.size());
-  const size_t lines = m_weight.size();
-  std::vector<Row> rows(lines);
-  Small A = Small::Zero(m_linear, m_linear);
-  Column b = Column::Zero(m_linear);
-  Touch touched;
-  for (size_t i = 0; i < lines; ++i) {
-    if (!touch(i, word, touched)) {
+  constexpr int most = 7;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, most>;
+  const auto lines = static_cast<Eigen::Index>(m_weight.size());
+  const size_t n = word.chips.size();
+  Rows A = Rows::Zero(lines, most);
+  Eigen::VectorXd b(lines);
+  Touch touched(word);
+  for (Eigen::Index i = 0; i < lines; ++i) {
+    const auto line = static_cast<size_t>(i);
+    if (!touched.at(m_time[line])) {
       return 1e300;
     }
     double s = 0;
-    long k = ((touched.first % n) + n) % n;
+    size_t k = touched.first;
     for (int j = 0; j < touched.count; ++j, k = k + 1 == n ? 0 : k + 1) {
-      s += word.chips[static_cast<size_t>(k)] != 0 ? touched.share[static_cast<size_t>(j)] : 0;
+      s += word.chips[k] != 0 ? touched.share[static_cast<size_t>(j)] : 0;
     }
     s = std::min(1.0, word.gain * s);
-    const double y = (m_profile->time[i] - m_middle) / m_half;
-    Row &row = rows[i];
-    row[0] = 1;
-    row[1] = m_given[i] * s;
-    for (int j = 2; j < m_linear - 1; ++j) {
-      row[static_cast<size_t>(j)] = row[static_cast<size_t>(j - 1)] * y;
+    const double root = std::sqrt(m_weight[line]), y = m_time[line] / m_half;
+    double lit = root * m_given[line] * s;
+    A(i, 0) = root;
+    A(i, bendPlace) = lit * (1 - s);
+    for (int p = 1; p < m_linear - 1; ++p, lit *= y) {
+      A(i, p) = lit;
     }
-    row[static_cast<size_t>(m_linear - 1)] = m_given[i] * s * (1 - s);
-    for (int p = 0; p < m_linear; ++p) {
-      const double weighted = m_weight[i] * row[static_cast<size_t>(p)];
-      for (int q = 0; q <= p; ++q) {
-        A(p, q) += weighted * row[static_cast<size_t>(q)];
-      }
-      b(p) += weighted * m_profile->light[i];
-    }
+    b(i) = root * m_profile->light[line];
   }
-  A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
-  for (int p = 2; p < m_linear - 1; ++p) {
-    A(p, p) += 0.06; // bends of four times the envelope are one standard deviation
+  Eigen::Matrix<double, most, most> normal = A.transpose() * A;
+  normal.diagonal().array() += 1e-9 * (normal(0, 0) + 1e-12);
+  for (int p = 2; p < bendPlace; ++p) {
+    normal(p, p) += 0.06; // bends of four times the envelope are one standard deviation
   }
   static const double usualBend = 0.3; // envelopes, standard deviation
-  A(m_linear - 1, m_linear - 1) += 1 / (usualBend * usualBend);
-  const Column c = A.selfadjointView<Eigen::Lower>().ldlt().solve(b);
-  word.light.fill(0);
-  for (int p = 0; p < m_linear; ++p) {
-    word.light[p + 1 == m_linear ? bendPlace : static_cast<size_t>(p)] = c(p);
+  normal(bendPlace, bendPlace) += 1 / (usualBend * usualBend);
+  const Eigen::Matrix<double, most, 1> light = normal.ldlt().solve(A.transpose() * b);
+  std::copy(light.begin(), light.end(), word.light.begin());
+  b -= A * light;
+  if (residuals != nullptr) {
+    residuals->head(lines) = b;
   }
-  double sum = 0;
-  for (size_t i = 0; i < lines; ++i) {
-    double residual = m_profile->light[i];
-    for (int p = 0; p < m_linear; ++p) {
-      residual -= c(p) * rows[i][static_cast<size_t>(p)];
-    }
-    sum += m_weight[i] * residual * residual;
-    if (residuals != nullptr) {
-  (*residuals)(static_cast<Eigen::Index>(i)) = std::sqrt(m_weight[i]) * residual;
-    }
-  }
-  return c(1) > 0 ? sum : 1e300; // a lamp that shines where it should be dark
+  return light(1) > 0 ? b.squaredNorm() : 1e300; // a lamp that shines where it should be dark
 }
 
 //! A step of phase, of the duration and of the exposure, all in chips (the duration's at the profile's ends),

@@ -93,18 +93,10 @@ public:
 
 private:
   static constexpr int nonlinear = 4; // phase, duration, exposure, gain
-  using Row = std::array<double, 7>;
   using Place = Eigen::Matrix<double, nonlinear, 1>;
   using Curvature = Eigen::Matrix<double, nonlinear, nonlinear>;
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, nonlinear>;
 
-  //! The chips that a line's exposure touches.
-  struct Touch {
-    long first;
-    int count;
-    std::array<double, vpChipTrellis::widestWindow> share;
-  };
-  bool touch(size_t line, const Word &word, Touch &touched) const;
   //! Light at each line by its coefficients, grey levels.
   struct Light {
     double offset;
@@ -128,6 +120,7 @@ private:
   Settings m_settings;
   std::vector<double> m_weight; // 1 / variance of each line
   std::vector<double> m_given;  // envelope, grey levels
+  std::vector<double> m_time;   // s, from the middle of the profile
   double m_dark = 0;            // light while dark, about
   int m_linear = 3;             // parameters of the light
   double m_middle = 0;          // s
