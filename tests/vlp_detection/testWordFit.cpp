@@ -56,7 +56,7 @@ TEST(WordFit, StrangersThatDifferInOneChipAreReadAsWhatTheyAre)
       char &chip = sent.chips[random() % sent.chips.size()];
       chip = chip == '1' ? '0' : '1';
       const std::string chips = read(sent, random, known).chips;
-      EXPECT_TRUE(chips == sent.canonical() || (!known && chips.empty())) << chips << ", sent " << sent.chips;
+      EXPECT_TRUE(sameSignal(chips, sent.canonical()) || (!known && chips.empty())) << chips << ", sent " << sent.chips;
     }
   }
 }
@@ -154,13 +154,13 @@ std::vector<Case> cases()
 
 TEST(WordFit, Statistics)
 {
-  static const int trials = 100;
+  static const int trials = 60, blindTrials = 6;
   for (bool known : {true, false}) {
     std::cout << (known ? "Format known from the map:\n" : "Format unknown:\n");
     for (const Case &c : cases()) {
       std::mt19937 random(5);
       WordScore score;
-      for (int trial = 0; trial < (known ? trials : trials / 4); ++trial) {
+      for (int trial = 0; trial < (known ? trials : blindTrials); ++trial) {
         SentWord sent = c.sent;
         sent.chips = c.onOffBits > 0 ? onOff(random(), c.onOffBits) : manchester(random() & 255);
         const vpStripeFeatures seen = read(sent, random, known, c.rateError);

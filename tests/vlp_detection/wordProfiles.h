@@ -110,6 +110,16 @@ inline std::string onOff(unsigned int id, int bits)
   return chips;
 }
 
+//! Whether a word is the one sent, or the one that it says several times over: no light tells the two apart.
+inline bool sameSignal(const std::string &seen, const std::string &sent)
+{
+  std::string repeated = seen;
+  while (repeated.size() < sent.size()) {
+    repeated += seen;
+  }
+  return repeated == sent;
+}
+
 //! How often words were read right, wrong, not at all.
 struct WordScore {
   int right = 0, wrong = 0, refused = 0, notCoded = 0;
@@ -121,7 +131,7 @@ struct WordScore {
     notCoded += seen.signal == vpStripeFeatures::Signal::coded ? 0 : 1;
     if (seen.chips.empty()) {
       ++refused;
-    } else if (seen.chips == sent.canonical()) {
+    } else if (sameSignal(seen.chips, sent.canonical())) {
       ++right;
       const double rate = seen.frequency * static_cast<double>(seen.chips.size());
       const double z = (rate / sent.chipRate - 1) * seen.frequency / seen.frequencySigma;

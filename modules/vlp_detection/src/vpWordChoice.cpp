@@ -120,7 +120,7 @@ std::vector<vpWordFit::Word> vpWordFit::repeating(const Word &start, size_t fewe
                                                   size_t count) const
 {
   // Repetition tells the duration better than the start does.
-  static const std::array<double, 5> atTheEnds{-0.4, -0.2, 0, 0.2, 0.4};  // chips
+  static const std::array<double, 5> atTheEnds{-0.4, -0.2, 0, 0.2, 0.4}; // chips
   static const std::array<double, 3> atTheMiddle{-0.15, 0, 0.15};
   const Light light = lightOf(start);
   std::vector<Word> found;

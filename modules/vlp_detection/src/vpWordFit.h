@@ -19,14 +19,14 @@ BEGIN_VISP_NAMESPACE
 /*!
   A word of n chips, sent over and over, fitted to a profile:
     light of line i = offset + E(y) (r + b r (1 - r)),  r = min(1, g s),  s = sum over k of c_k w_ik,
-  w_ik the share of the line's exposure that falls into the chips k, k + n, k + 2n ..., c_k 0 or 1, E the given
-  envelope times a polynomial in y, the line scaled to [-1, 1] over the profile. The gain g >= 1 stands for
-  saturation; the bend b for what else makes lines that see an edge lighter or darker than their share: a tone
-  curve, an emitter that goes out more slowly than it comes on.
+  w_ik the share of the line's exposure that falls into the chips k, k + n, k + 2n ..., c_k 0 or 1, E the
+  given envelope times a polynomial in y, the line scaled to [-1, 1] over the profile. The gain g >= 1 stands
+  for saturation; the bend b for what else makes lines that see an edge lighter or darker than their share: a
+  tone curve, an emitter that goes out more slowly than it comes on.
 
   All words are compared at once (vpChipTrellis) on a grid of phases and durations of a chip; the light's
-  parameters are linear, and phase, duration, exposure and gain follow by Gauss and Newton's method, in turns with
-  the chips until these stay.
+  parameters are linear, and phase, duration, exposure and gain follow by Gauss and Newton's method, in turns
+  with the chips until these stay.
 */
 class vpWordFit
 {
@@ -39,11 +39,11 @@ public:
 
   //! One word and how it is sent.
   struct Word {
-    std::vector<char> chips; // of one repetition, 1 lit
-    double chip = 0;         // s, duration of one
-    double phase = 0;        // chips: place in the word of the profile's middle
-    double exposure = 0;     // s
-    double gain = 1;         // of the light before saturation cuts it off
+    std::vector<char> chips;       // of one repetition, 1 lit
+    double chip = 0;               // s, duration of one
+    double phase = 0;              // chips: place in the word of the profile's middle
+    double exposure = 0;           // s
+    double gain = 1;               // of the light before saturation cuts it off
     std::array<double, 7> light{}; // offset, polynomial, bend; the latter two in envelopes
     double chiSquare = 0;          // of the profile and the exposure's prior
     double misfit = 1;             // share of the stripes' power left unexplained, beyond noise

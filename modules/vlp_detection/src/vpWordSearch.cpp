@@ -7,14 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <cstdio>
-#include <cstdlib>
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const size_t fewestChips = 6;        // of a word of unknown format: fewer hold no header and no identifier
+const size_t fewestChips = 6; // of a word of unknown format: fewer hold no header and no identifier
 const size_t mostChips = 64;
 
 using Word = vpWordFit::Word;
@@ -73,20 +71,60 @@ Word coarsest(const Word &word)
   return coarse;
 }
 
+//! The light that a word makes, whoever counts its chips: canonical, of the shortest repetition.
+std::string signalOf(const Word &word)
+{
+  const std::string chips = vpWordFit::canonical(coarsest(word).chips);
+  const size_t period = (chips + chips).find(chips, 1);
+  return chips.substr(0, period);
+}
+
 //! Probability of a word beside others.
 double amongOthers(const vpWordFit &fit, const Word &word, const std::vector<Word> &others)
 {
-  std::vector<std::string> counted{vpWordFit::canonical(word.chips)};
+  std::vector<std::string> counted{signalOf(word)};
   double odds = 0;
   for (const Word &other : others) {
-    std::string chips = vpWordFit::canonical(other.chips);
-    if (std::find(counted.begin(), counted.end(), chips) == counted.end()) {
-      counted.push_back(std::move(chips));
+    std::string signal = signalOf(other);
+    if (std::find(counted.begin(), counted.end(), signal) == counted.end()) {
+      counted.push_back(std::move(signal));
       odds += std::exp(-0.5 * (fit.cost(other) - fit.cost(word)));
     }
   }
   return 1 / (1 + odds);
 }
+
+//! Words of chips as long as those of \e starts, the best first.
+std::vector<Word> repeating(const vpWordFit &fit, const std::vector<Word> &starts)
+{
+  static const size_t lengths = 4; // to fit, of each start
+  std::vector<Word> words;
+  std::vector<double> tried;
+  double least = 1e300;
+  for (const Word &start : starts) {
+    // Others that differ by less than half a chip over the profile, or fit worse whatever they save.
+    const double same = 0.25 * start.chip / fit.span() * start.chip;
+    if (start.chiSquare > 1e299 || std::any_of(tried.begin(), tried.end(), [&](double chip) {
+          return std::abs(chip - start.chip) < same;
+        })) {
+      continue;
+    }
+    tried.push_back(start.chip);
+    Word shorter = start;
+    shorter.chips.resize(fewestChips);
+    if (fit.cost(shorter) > least) {
+      continue;
+    }
+    for (Word &word : fit.repeating(start, fewestChips, mostRepeating(start, fit.span()), lengths)) {
+      least = std::min(least, fit.cost(word));
+      words.push_back(std::move(word));
+    }
+  }
+  std::sort(words.begin(), words.end(),
+            [&fit](const Word &a, const Word &b) { return fit.cost(a) < fit.cost(b); });
+  return words;
+}
+
 } // namespace
 
 bool vpWordSearch::singlePulse(const std::vector<char> &chips)
@@ -119,10 +157,10 @@ std::optional<vpWordSearch::Found> vpWordSearch::known(const std::vector<vpWordF
       continue;
     }
     const Word &word = words.front();
-    if (getenv("WD")) printf("known misfit %.3f chi2 %.1f infl %.2f conf %.4f exp %g gain %.2f bend %.2f chip %g next %.1f\n", word.misfit, word.chiSquare, fit.inflation(word), fit.confidence(word, words, fit.inflation(word)), word.exposure, word.gain, word.light[6]/word.light[1], word.chip, words.size()>1?words[1].chiSquare-word.chiSquare:-1);
     if (word.misfit < misfit && fit.span() >= static_cast<double>(format.chips) * word.chip) {
       const double inflation = fit.inflation(word);
-      best = Found{word, fit.confidence(word, words, inflation), fit.durationSigma(word, inflation), inflation};
+      best =
+          Found{word, fit.confidence(word, words, inflation), fit.durationSigma(word, inflation), inflation};
     }
   }
   return best;
@@ -171,7 +209,7 @@ vpStripeProfile vpWordSearch::middle(double span, std::vector<double> &envelope)
 
 std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
 {
-  static const size_t durations = 6, lengths = 6; // to fit
+  static const size_t durations = 6; // to fit
   const double run = shortestRun();
   const double line = std::abs(m_profile->time.back() - m_profile->time.front()) /
                       static_cast<double>(m_profile->time.size() - 1);
@@ -180,33 +218,26 @@ std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
   std::vector<double> envelope;
   const vpStripeProfile part = middle(2.5 * mostChips * shortest, envelope);
   const vpWordFit fit(part, m_settings, envelope);
-  const std::vector<Word> once = fit.durations(shortest, longest, durations);
-  std::vector<Word> words;
-  for (const Word &start : once) {
-    if (start.misfit < misfit) {
-      for (Word &word : fit.repeating(start, fewestChips, mostRepeating(start, fit.span()), lengths)) {
-        words.push_back(std::move(word));
-      }
-    }
-  }
-  const auto best = std::min_element(
-      words.begin(), words.end(), [&fit](const Word &a, const Word &b) { return fit.cost(a) < fit.cost(b); });
-  if (best == words.end() || best->misfit > misfit) {
+  std::vector<Word> once = fit.durations(shortest, longest, durations);
+  once.erase(
+      std::remove_if(once.begin(), once.end(), [misfit](const Word &start) { return start.misfit > misfit; }),
+      once.end());
+  std::vector<Word> words = repeating(fit, once);
+  if (words.empty() || words.front().misfit > misfit) {
     return std::nullopt;
   }
   Found found;
-  found.word = coarsest(*best);
-  if (found.word.chips.size() < fewestChips) {
+  found.word = coarsest(words.front());
+  const size_t chips = found.word.chips.size();
+  if (chips < fewestChips || chips > mostRepeating(found.word, fit.span())) {
     return std::nullopt;
   }
   fit.refine(found.word);
   words.insert(words.end(), once.begin(), once.end()); // it may be that nothing repeats
-  const double inflation = fit.inflation(found.word);
+  found.inflation = fit.inflation(found.word);
   found.confidence =
-      std::min(amongOthers(fit, found.word, words), fit.confidence(found.word, {}, inflation));
-  found.inflation = inflation;
-  found.durationSigma = fit.durationSigma(found.word, inflation);
-  if (getenv("WD")) printf("blind n %zu chip %g exp %g gain %.2f misfit %.3f infl %.1f cost %.1f conf %g %g %s\n", found.word.chips.size(), found.word.chip, found.word.exposure, found.word.gain, found.word.misfit, inflation, fit.cost(found.word),amongOthers(fit, found.word, words), fit.confidence(found.word, {}, inflation), vpWordFit::canonical(found.word.chips).c_str());
+      std::min(amongOthers(fit, found.word, words), fit.confidence(found.word, {}, found.inflation));
+  found.durationSigma = fit.durationSigma(found.word, found.inflation);
   return found;
 }
 
