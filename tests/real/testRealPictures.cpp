@@ -153,9 +153,9 @@ TEST(LumiaFloor, FifteenOfFifteenIds)
 }
 
 /*!
-  The chips of each coded lamp, the same in all frames. That its lines are the sensor's at steps of 1, 2, 2, 1,
-  2 ... (2048 x 1536 resized to 1280 x 960 as the paper does) nobody recorded, but the stripes say: with their
-  times the misfit falls from 0.02 to 0.003.
+  The chips of each coded lamp, the same in all frames. That its lines are the sensor's at steps of 1, 2, 2,
+  1, 2 ... (2048 x 1536 resized to 1280 x 960 as the paper does) nobody recorded, but the stripes say: with
+  their times the misfit falls from 0.02 to 0.003.
 */
 void expectSteadyChips(RealSet &set, bool resized)
 {

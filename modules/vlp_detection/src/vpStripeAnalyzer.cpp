@@ -154,8 +154,7 @@ std::optional<vpWordSearch::Found> findWord(const vpWordSearch &search, const vp
       word = other;
     }
   }
-  if (!word || word->confidence < analyzer.minWordConfidence ||
-      vpWordSearch::singlePulse(word->word.chips)) {
+  if (!word || word->confidence < analyzer.minWordConfidence || vpWordSearch::singlePulse(word->word.chips)) {
     return std::nullopt;
   }
   static const double noise = 0.005; // share of the power that no comparison goes below
@@ -289,7 +288,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     wordSettings.modelError = modelError;
     wordSettings.exposureTolerance = exposureTolerance;
     const vpWordSearch search(profile, wordSettings, envelope);
-    const std::optional<vpWordSearch::Found> word = findWord(search, *this, features.misfit, profile.time.size());
+    const std::optional<vpWordSearch::Found> word =
+        findWord(search, *this, features.misfit, profile.time.size());
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }

@@ -200,7 +200,9 @@ double vpWordFit::fitLight(Word &word, Eigen::VectorXd *residuals) const
   static const double usualBend = 0.3; // envelopes, standard deviation
   normal(bendPlace, bendPlace) += 1 / (usualBend * usualBend);
   const Eigen::Matrix<double, most, 1> light = normal.ldlt().solve(A.transpose() * b);
-  std::copy(light.begin(), light.end(), word.light.begin());
+  for (int p = 0; p < most; ++p) {
+    word.light[static_cast<size_t>(p)] = light(p);
+  }
   b -= A * light;
   if (residuals != nullptr) {
     residuals->head(lines) = b;

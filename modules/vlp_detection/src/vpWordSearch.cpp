@@ -228,8 +228,10 @@ std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
   }
   Found found;
   found.word = coarsest(words.front());
+  Word twice = found.word; // its last run may go on at its beginning
+  twice.chips.insert(twice.chips.end(), found.word.chips.begin(), found.word.chips.end());
   const size_t chips = found.word.chips.size();
-  if (chips < fewestChips || chips > mostRepeating(found.word, fit.span())) {
+  if (chips < fewestChips || chips > mostRepeating(twice, fit.span())) {
     return std::nullopt;
   }
   fit.refine(found.word);
