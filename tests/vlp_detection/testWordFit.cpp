@@ -19,7 +19,7 @@ vpStripeFeatures read(const SentWord &sent, std::mt19937 &random, bool known, do
   vpStripeAnalyzer analyzer;
   analyzer.searchTwoPulses = false;
   if (known) {
-    analyzer.words = {sent.format()};
+    analyzer.words.push_back(sent.format());
   }
   SentWord really = sent;
   really.chipRate *= 1 + rateError;

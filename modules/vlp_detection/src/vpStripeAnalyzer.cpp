@@ -138,17 +138,17 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
 
 /*!
   A word in place of what leaves \e unexplained of the stripes' power. It has many chips to choose: it has to
-  explain as much more as their number asks for (Schwarz 1978). One of a format that the map does not know is
-  sought only where neither pwm nor twoPulse explains the stripes at all.
+  explain as much more as their number asks for (Schwarz 1978). Where pwm or twoPulse may yet be what the lamp
+  sends, it has to be of the map's formats and to repeat: chips seen once can follow any light.
 */
 std::optional<vpWordSearch::Found> findWord(const vpWordSearch &search, const vpStripeAnalyzer &analyzer,
-                                            double unexplained, size_t lines)
+                                            double unexplained, const vpStripeProfile &profile)
 {
   static const double wordMisfit = 0.1;
   static const double explained = 2; // chi-square per degree of freedom
+  const bool neither = !(unexplained < analyzer.maxMisfit);
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
-  const bool stranger = !word || word->inflation > explained;
-  if (stranger && !(unexplained < analyzer.maxMisfit)) {
+  if (neither && (!word || word->inflation > explained)) {
     const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
     if (!word || (other && other->inflation < 0.5 * word->inflation)) {
       word = other;
@@ -157,12 +157,14 @@ std::optional<vpWordSearch::Found> findWord(const vpWordSearch &search, const vp
   if (!word || word->confidence < analyzer.minWordConfidence || vpWordSearch::singlePulse(word->word.chips)) {
     return std::nullopt;
   }
-  static const double noise = 0.005; // share of the power that no comparison goes below
-  static const double clearly = 10;
-  const auto n = static_cast<double>(lines);
-  const double gain = n * std::log((unexplained + noise) / (word->word.misfit + noise));
-  const double price = 2 * M_LN2 * static_cast<double>(word->word.chips.size());
-  return !(gain < price + clearly) ? word : std::nullopt;
+  static const double repeated = 1.3, noise = 0.005; // share of the power that no comparison goes below
+  static const double clearly = 10;                  // in chi-square
+  const auto chips = static_cast<double>(word->word.chips.size());
+  const double span = std::abs(profile.time.back() - profile.time.front());
+  const double gain = static_cast<double>(profile.time.size()) *
+                      std::log((unexplained + noise) / (word->word.misfit + noise));
+  const bool better = gain > 2 * M_LN2 * chips + clearly;
+  return better && (neither || span > repeated * chips * word->word.chip) ? word : std::nullopt;
 }
 
 //! What was fitted is not what it sends: a word is, where it is known.
@@ -288,8 +290,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     wordSettings.modelError = modelError;
     wordSettings.exposureTolerance = exposureTolerance;
     const vpWordSearch search(profile, wordSettings, envelope);
-    const std::optional<vpWordSearch::Found> word =
-        findWord(search, *this, features.misfit, profile.time.size());
+    const std::optional<vpWordSearch::Found> word = findWord(search, *this, features.misfit, profile);
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }

@@ -166,14 +166,14 @@ std::optional<vpWordSearch::Found> vpWordSearch::known(const std::vector<vpWordF
   return best;
 }
 
-//! Of the stretches between crossings of half the envelope that noise does not make, s, roughly.
-double vpWordSearch::shortestRun() const
+//! Of the stretches between crossings of half the envelope, s: one in eight is shorter, by noise or at the rim.
+double vpWordSearch::shortRun() const
 {
   static const double half = 0.5, sigmas = 4;
-  double shortest = std::abs(m_profile->time.back() - m_profile->time.front()), begin = 0;
+  std::vector<double> runs;
+  double begin = 0;
   bool begun = false, lit = m_profile->light[0] > half * m_envelope[0];
   for (size_t i = 1; i < m_envelope.size(); ++i) {
-    // As far from the line before as noise does not reach, if not as far as the envelope.
     const double rise = m_profile->light[i] - half * m_envelope[i];
     const double margin = std::min(sigmas * m_profile->sigma[i], 0.3 * m_envelope[i]);
     if (lit ? rise > -margin : rise < margin) {
@@ -181,12 +181,17 @@ double vpWordSearch::shortestRun() const
     }
     lit = !lit;
     if (begun) {
-      shortest = std::min(shortest, std::abs(m_profile->time[i] - begin));
+      runs.push_back(std::abs(m_profile->time[i] - begin));
     }
     begin = m_profile->time[i];
     begun = true;
   }
-  return shortest;
+  if (runs.empty()) {
+    return std::abs(m_profile->time.back() - m_profile->time.front());
+  }
+  const auto place = runs.begin() + static_cast<long>(runs.size() / 8);
+  std::nth_element(runs.begin(), place, runs.end());
+  return *place;
 }
 
 //! The lines of the middle \e span seconds.
@@ -210,7 +215,7 @@ vpStripeProfile vpWordSearch::middle(double span, std::vector<double> &envelope)
 std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
 {
   static const size_t durations = 6; // to fit
-  const double run = shortestRun();
+  const double run = shortRun();
   const double line = std::abs(m_profile->time.back() - m_profile->time.front()) /
                       static_cast<double>(m_profile->time.size() - 1);
   const double shortest = std::max(1.1 * line, 0.45 * run);

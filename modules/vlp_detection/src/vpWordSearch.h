@@ -47,7 +47,7 @@ public:
   static bool singlePulse(const std::vector<char> &chips);
 
 private:
-  double shortestRun() const;
+  double shortRun() const;
   vpStripeProfile middle(double span, std::vector<double> &envelope) const;
 
   const vpStripeProfile *m_profile;
