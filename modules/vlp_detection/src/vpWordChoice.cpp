@@ -49,17 +49,21 @@ vpWordFit::Word vpWordFit::plain(size_t chips, double chip) const
   return word;
 }
 
-//! Chi-square of words on a grid of phases, with exposure and gain as given and with more of both.
+//! Chi-square of words on a grid of phases, with exposure and gain as stated, with more of both, and with an
+//! exposure of about a chip: what is stated may be far off, what blurs the edges yet lets chips be seen is
+//! not.
 void vpWordFit::grid(const Word &about, std::vector<Word> &found) const
 {
   static const int phases = 8;
-  static const double blurred = 1.8, saturated = 1.15;
+  static const double blurred = 1.8, saturated = 1.15, aboutOneChip = 1.2;
   const Light light = lightOf(about);
-  for (int k = 0; k < 2 * phases; ++k) {
+  for (int k = 0; k < 3 * phases; ++k) {
     Word word = about;
-    word.phase = static_cast<double>(k / 2) / phases;
-    word.exposure *= k % 2 == 0 ? 1 : blurred;
-    word.gain = k % 2 == 0 ? 1 : saturated;
+    word.phase = static_cast<double>(k / 3) / phases;
+    word.exposure = k % 3 == 0   ? about.exposure
+                    : k % 3 == 1 ? blurred * about.exposure
+                                 : aboutOneChip * about.chip;
+    word.gain = k % 3 == 0 ? 1 : saturated;
     word.chiSquare = least(word, light, nullptr);
     found.push_back(std::move(word));
   }

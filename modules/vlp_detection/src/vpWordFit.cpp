@@ -158,7 +158,7 @@ double vpWordFit::least(const Word &word, const Light &light, std::vector<char> 
 Eigen::Vector2d vpWordFit::prior(const Word &word) const
 {
   static const double usualGain = 0.3; // of its logarithm
-  return {(word.exposure - m_profile->exposure) / (m_settings.exposureTolerance * m_profile->exposure),
+  return {std::log(word.exposure / m_profile->exposure) / m_settings.exposureTolerance,
           std::log(word.gain) / usualGain};
 }
 
@@ -217,8 +217,8 @@ vpWordFit::Word vpWordFit::moved(const Word &word, const Place &step) const
   Word other = word;
   other.phase += step(0);
   other.chip /= 1 + step(1) * word.chip / m_half;
-  other.exposure = std::clamp(word.exposure + step(2) * word.chip, 0.1 * m_profile->exposure,
-                              3.9 * std::min(word.chip, m_profile->exposure));
+  other.exposure = std::clamp(word.exposure + step(2) * word.chip,
+                              0.1 * std::min(word.chip, m_profile->exposure), 3.9 * word.chip);
   other.gain = std::clamp(word.gain * std::exp(step(3)), 1.0, brightest);
   return other;
 }

@@ -166,7 +166,8 @@ std::optional<vpWordSearch::Found> vpWordSearch::known(const std::vector<vpWordF
   return best;
 }
 
-//! Of the stretches between crossings of half the envelope, s: one in eight is shorter, by noise or at the rim.
+//! Of the stretches between crossings of half the envelope, s: one in eight is shorter, by noise or at the
+//! rim.
 double vpWordSearch::shortRun() const
 {
   static const double half = 0.5, sigmas = 4;
