@@ -150,7 +150,7 @@ std::optional<vpWordSearch::Found> findWord(const vpWordSearch &search, const vp
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
   if (neither && (!word || word->inflation > explained)) {
     const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
-    if (!word || (other && other->inflation < 0.5 * word->inflation)) {
+    if (!word || (other && other->inflation < 0.8 * word->inflation)) {
       word = other;
     }
   }

@@ -112,12 +112,24 @@ std::vector<vpWordFit::Word> vpWordFit::words(size_t chips, double chip, double 
 
 std::vector<vpWordFit::Word> vpWordFit::durations(double shortest, double longest, size_t count) const
 {
+  // Of each duration the best, and of these those that are better than their neighbours.
   std::vector<Word> found;
   for (double chip = shortest; chip <= longest; chip *= 1 + drift * chip / m_half) {
+    std::vector<Word> phases;
     // A ring longer than the profile does not close.
-    grid(plain(static_cast<size_t>(std::ceil(span() / chip)) + vpChipTrellis::widestWindow, chip), found);
+    grid(plain(static_cast<size_t>(std::ceil(span() / chip)) + vpChipTrellis::widestWindow, chip), phases);
+    found.push_back(
+        std::move(*std::min_element(phases.begin(), phases.end(),
+                                    [](const Word &a, const Word &b) { return a.chiSquare < b.chiSquare; })));
   }
-  return refined(found, count);
+  std::vector<Word> minima;
+  for (size_t k = 0; k < found.size(); ++k) {
+    if ((k == 0 || cost(found[k]) <= cost(found[k - 1])) &&
+        (k + 1 == found.size() || cost(found[k]) < cost(found[k + 1]))) {
+      minima.push_back(found[k]);
+    }
+  }
+  return refined(minima, count);
 }
 
 std::vector<vpWordFit::Word> vpWordFit::repeating(const Word &start, size_t fewest, size_t most,

@@ -215,7 +215,7 @@ vpStripeProfile vpWordSearch::middle(double span, std::vector<double> &envelope)
 
 std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
 {
-  static const size_t durations = 6; // to fit
+  static const size_t durations = 8; // to fit
   const double run = shortRun();
   const double line = std::abs(m_profile->time.back() - m_profile->time.front()) /
                       static_cast<double>(m_profile->time.size() - 1);
