@@ -155,7 +155,7 @@ std::vector<Case> cases()
 
 TEST(WordFit, Statistics)
 {
-  static const int trials = 40, blindTrials = 4;
+  static const int trials = 30, blindTrials = 3;
   for (bool known : {true, false}) {
     std::cout << (known ? "Format known from the map:\n" : "Format unknown:\n");
     for (const Case &c : cases()) {
