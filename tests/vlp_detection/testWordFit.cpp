@@ -7,6 +7,7 @@
 #include "wordProfiles.h"
 
 #include <gtest/gtest.h>
+#include <visp3/vlp_detection/vpLedDetector.h>
 
 namespace
 {
@@ -77,6 +78,42 @@ TEST(WordFit, LessThanOneRepetitionIsRefused)
       }
     }
   }
+}
+
+TEST(WordFit, ALittleMoreThanOneRepetitionOfAKnownFormatWillDo)
+{
+  std::mt19937 random(6);
+  for (int trial = 0; trial < 20; ++trial) {
+    SentWord sent = manchesterLamp(random);
+    sent.lines = static_cast<int>(1.05 * 28 / sent.chipRate / SentWord::rowTime);
+    EXPECT_EQ(read(sent, random, true).chips, sent.canonical());
+  }
+}
+
+TEST(WordFit, DetectorTakesEachFormatOfTheMapOnce)
+{
+  vpLampMap map;
+  for (double rate : {8000.0, 8000.0, 5000.0}) {
+    vpLamp lamp;
+    lamp.modulation.kind = vpModulation::Kind::word;
+    lamp.modulation.bits = rate == 8000 ? "01111010110010" : "01010111101100";
+    lamp.modulation.code = rate == 8000 ? vpModulation::Code::manchester : vpModulation::Code::ook;
+    lamp.modulation.chipRate = rate;
+    lamp.oscillatorPpm = map.lamps.empty() ? 50 : 10000;
+    map.lamps.push_back(lamp);
+  }
+  vpVlpRig rig;
+  rig.width = rig.height = 100;
+  rig.camera.initPersProjWithoutDistortion(100, 100, 50, 50);
+  rig.shutter.rowTime = rig.shutter.exposure = SentWord::rowTime;
+  rig.shutter.rowTimeSigma = 0;
+  const std::vector<vpWordFormat> words = vpLedDetector(rig, map).stripeAnalyzer.words;
+  ASSERT_EQ(words.size(), 2u);
+  EXPECT_EQ(words[0].chips, 28u);
+  EXPECT_EQ(words[0].chipRate, 8000);
+  EXPECT_NEAR(words[0].tolerance, 0.01, 1e-9); // of the less certain clock
+  EXPECT_EQ(words[1].chips, 14u);
+  EXPECT_EQ(words[1].chipRate, 5000);
 }
 
 TEST(WordFit, PlainPulsesStayPwmWhateverWordsTheMapHas)

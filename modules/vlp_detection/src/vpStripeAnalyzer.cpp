@@ -138,19 +138,24 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
 
 /*!
   A word in place of what leaves \e unexplained of the stripes' power. It has many chips to choose: it has to
-  explain as much more as their number asks for (Schwarz 1978). Where pwm or twoPulse may yet be what the lamp
-  sends, it has to be of the map's formats and to repeat: chips seen once can follow any light.
+  explain as much more as their number asks for (Schwarz 1978). Chips seen only once can follow any light:
+  such a word has to explain all but noise, and none is taken where pwm or twoPulse may yet be what the lamp
+  sends.
 */
-std::optional<vpWordSearch::Found> findWord(const vpWordSearch &search, const vpStripeAnalyzer &analyzer,
-                                            double unexplained, const vpStripeProfile &profile)
+std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
+                                            const std::vector<double> &envelope, int envelopeOrder,
+                                            const vpStripeAnalyzer &analyzer, double unexplained)
 {
   static const double wordMisfit = 0.1;
-  static const double explained = 2; // chi-square per degree of freedom
+  static const double explained = 2, nearlyExplained = 3; // chi-square per degree of freedom
+  const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, analyzer.exposureTolerance},
+                            envelope);
   const bool neither = !(unexplained < analyzer.maxMisfit);
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
   if (neither && (!word || word->inflation > explained)) {
     const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
-    if (!word || (other && other->inflation < 0.8 * word->inflation)) {
+    static const double clearlyLess = 0.8;
+    if (!word || (other && other->inflation < clearlyLess * word->inflation)) {
       word = other;
     }
   }
@@ -161,10 +166,13 @@ std::optional<vpWordSearch::Found> findWord(const vpWordSearch &search, const vp
   static const double clearly = 10;                  // in chi-square
   const auto chips = static_cast<double>(word->word.chips.size());
   const double span = std::abs(profile.time.back() - profile.time.front());
+  const bool once = span < repeated * chips * word->word.chip;
   const double gain = static_cast<double>(profile.time.size()) *
                       std::log((unexplained + noise) / (word->word.misfit + noise));
-  const bool better = gain > 2 * M_LN2 * chips + clearly;
-  return better && (neither || span > repeated * chips * word->word.chip) ? word : std::nullopt;
+  if (gain < 2 * M_LN2 * chips + clearly || (once && !(neither && word->inflation < nearlyExplained))) {
+    return std::nullopt;
+  }
+  return word;
 }
 
 //! What was fitted is not what it sends: a word is, where it is known.
@@ -285,12 +293,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   static const double beyondDoubt = 0.04;
   if (!(features.misfit < beyondDoubt)) {
-    vpWordFit::Settings wordSettings;
-    wordSettings.envelopeOrder = settings.envelopeOrder;
-    wordSettings.modelError = modelError;
-    wordSettings.exposureTolerance = exposureTolerance;
-    const vpWordSearch search(profile, wordSettings, envelope);
-    const std::optional<vpWordSearch::Found> word = findWord(search, *this, features.misfit, profile);
+    const std::optional<vpWordSearch::Found> word =
+        findWord(profile, envelope, settings.envelopeOrder, *this, features.misfit);
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }

@@ -43,7 +43,7 @@ vpWordFit::Word vpWordFit::plain(size_t chips, double chip) const
   Word word;
   word.chips.assign(chips, 0);
   word.chip = chip;
-  word.exposure = m_profile->exposure;
+  word.exposure = m_exposure;
   word.light[0] = m_dark;
   word.light[1] = 1;
   return word;

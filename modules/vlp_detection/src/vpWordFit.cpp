@@ -75,14 +75,15 @@ vpWordFit::vpWordFit(const vpStripeProfile &profile, const Settings &settings,
   const size_t n = profile.light.size();
   m_middle = 0.5 * (*first + *last);
   m_half = std::max(0.5 * (*last - *first), 1e-12);
-  m_line = 2 * m_half / std::max<double>(1, static_cast<double>(n) - 1);
+  m_exposure =
+      std::max(profile.exposure, 0.02 * m_half / static_cast<double>(n)); // none at all has no logarithm
   // Peaks of single chips under a long exposure lie lower than those of long runs: what is lit and what is
   // dark say the brightest and the darkest lines.
   std::vector<double> share(n);
   for (size_t i = 0; i < n; ++i) {
     share[i] = profile.light[i] / m_given[i];
   }
-  const double lit = quantile(share, 0.92);
+  const double lit = std::max(quantile(share, 0.92), 0.3);
   const double dark = std::clamp(quantile(share, 0.05), 0.0, 0.7 * lit);
   for (double &given : m_given) {
     given *= lit - dark;
@@ -158,7 +159,7 @@ double vpWordFit::least(const Word &word, const Light &light, std::vector<char> 
 Eigen::Vector2d vpWordFit::prior(const Word &word) const
 {
   static const double usualGain = 0.3; // of its logarithm
-  return {std::log(word.exposure / m_profile->exposure) / m_settings.exposureTolerance,
+  return {std::log(word.exposure / m_exposure) / m_settings.exposureTolerance,
           std::log(word.gain) / usualGain};
 }
 
@@ -217,8 +218,8 @@ vpWordFit::Word vpWordFit::moved(const Word &word, const Place &step) const
   Word other = word;
   other.phase += step(0);
   other.chip /= 1 + step(1) * word.chip / m_half;
-  other.exposure = std::clamp(word.exposure + step(2) * word.chip,
-                              0.1 * std::min(word.chip, m_profile->exposure), 3.9 * word.chip);
+  other.exposure =
+      std::clamp(word.exposure + step(2) * word.chip, 0.1 * std::min(word.chip, m_exposure), 3.9 * word.chip);
   other.gain = std::clamp(word.gain * std::exp(step(3)), 1.0, brightest);
   return other;
 }

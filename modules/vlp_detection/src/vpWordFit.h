@@ -85,8 +85,7 @@ public:
   //! Chi-square per degree of freedom, at least 1.
   double inflation(const Word &word) const;
 
-  double span() const { return 2 * m_half + m_profile->exposure; } //!< s, of the exposures
-  double lineTime() const { return m_line; }                       //!< s, mean distance of the lines
+  double span() const { return 2 * m_half + m_exposure; } //!< s, of the exposures
 
   //! The greatest rotation of a word's chips as '0' and '1'.
   static std::string canonical(const std::vector<char> &chips);
@@ -125,7 +124,7 @@ private:
   int m_linear = 3;             // parameters of the light
   double m_middle = 0;          // s
   double m_half = 1;            // s
-  double m_line = 0;            // s
+  double m_exposure = 0;        // s
 };
 
 END_VISP_NAMESPACE
