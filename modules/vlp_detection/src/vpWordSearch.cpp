@@ -17,17 +17,22 @@ const size_t mostChips = 64;
 
 using Word = vpWordFit::Word;
 
+size_t longestRun(const std::vector<char> &chips)
+{
+  size_t run = 1, longest = 1;
+  for (size_t k = 1; k < chips.size(); ++k) {
+    run = chips[k] == chips[k - 1] ? run + 1 : 1;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
 //! The greatest number of chips that a profile shows so often that their repetition is no chance.
 size_t mostRepeating(const Word &word, double span)
 {
   // Chips of a Manchester code are half as many bits: it takes more of them to agree.
-  size_t run = 1, longestRun = 1;
-  for (size_t k = 1; k < word.chips.size(); ++k) {
-    run = word.chips[k] == word.chips[k - 1] ? run + 1 : 1;
-    longestRun = std::max(longestRun, run);
-  }
   static const double repetitions = 1.3;
-  const double seenTwice = longestRun > 2 ? 16 : 20; // chips
+  const double seenTwice = longestRun(word.chips) > 2 ? 16 : 21; // chips
   const double seen = span / word.chip;
   const double most = std::min({seen - seenTwice, seen / repetitions, static_cast<double>(mostChips)});
   return static_cast<size_t>(std::max(0.0, most));
@@ -245,6 +250,10 @@ std::optional<vpWordSearch::Found> vpWordSearch::blind(double misfit) const
   found.inflation = fit.inflation(found.word);
   found.confidence =
       std::min(amongOthers(fit, found.word, words), fit.confidence(found.word, {}, found.inflation));
+  // Chips that do not repeat may agree by chance, at any of several lengths.
+  const double bits = longestRun(twice.chips) > 2 ? 1 : 0.5; // a chip; of Manchester's code a half
+  const double seenTwice = fit.span() / found.word.chip - static_cast<double>(chips);
+  found.confidence *= 1 - std::min(1.0, 3 * std::exp2(-bits * seenTwice));
   found.durationSigma = fit.durationSigma(found.word, found.inflation);
   return found;
 }

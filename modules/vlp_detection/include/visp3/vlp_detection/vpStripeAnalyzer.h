@@ -54,7 +54,7 @@ struct VISP_EXPORT vpWordFormat {
   all words comes from dynamic programming over the chips that neighbouring lines share (Viterbi 1967), for
   each phase and duration of a chip on a grid, both refined by least squares. A word of the map's formats
   (`words`) has to be seen once from end to end; any other so long that its repetition is no chance (1.3
-  times, and 16 chips twice, 20 of a Manchester code). Its probability weighs it against all words that differ
+  times, and 16 chips twice, 21 of a Manchester code). Its probability weighs it against all words that differ
   in a chip, each fitted anew.
 */
 class VISP_EXPORT vpStripeAnalyzer
