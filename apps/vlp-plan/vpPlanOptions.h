@@ -29,7 +29,7 @@ struct vpPlanOptions {
   std::vector<double> duties = {0.2, 0.5, 0.8};
   double lowestFrequency = std::nan(""), highestFrequency = std::nan(""); // Hz; NaN: not given
   bool words = false;
-  vpWordFormat format;
+  vpWordScheme format;
   size_t worst = 10; // pairs of --check to print
 
   //! \return False where the help was asked for and is printed. \throw vpException on bad usage.

@@ -77,6 +77,7 @@ TEST(LedIdPlanner, SettingsAreTheRecognisers)
   const vpLedIdRecognizer recognizer({}, {});
   const vpLedIdPlanner planner(rigOf(fullSize));
   EXPECT_EQ(planner.gate, recognizer.gate);
+  EXPECT_EQ(planner.shapeGate, recognizer.shapeGate);
   EXPECT_EQ(planner.minConfidence, recognizer.minConfidence);
   EXPECT_EQ(planner.prediction.dutyError, recognizer.dutyError);
   EXPECT_EQ(planner.prediction.phaseError, recognizer.phaseError);
@@ -280,7 +281,7 @@ TEST(LedIdPlanner, AnalyserAndRecogniserTellTheLampsApart)
 TEST(LedIdPlanner, WordsHaveOneBeginningAndDifferHoweverTurned)
 {
   const vpLedIdPlanner planner(rigOf(fullSize));
-  vpWordFormat format;
+  vpWordScheme format;
   for (const unsigned int apart : {2u, 4u}) {
     format.minDistance = apart;
     const vpWordPlan plan = planner.words(146, format);
@@ -301,7 +302,7 @@ TEST(LedIdPlanner, WordsHaveOneBeginningAndDifferHoweverTurned)
       }
     }
   }
-  EXPECT_NE(planner.words(60, vpWordFormat()).refusal.find("the smallest lamp has 60"), std::string::npos);
+  EXPECT_NE(planner.words(60, vpWordScheme()).refusal.find("the smallest lamp has 60"), std::string::npos);
   format.chipRate = 30000;
   EXPECT_FALSE(planner.words(146, format).refusal.empty());
 }
@@ -348,7 +349,7 @@ TEST(LedIdPlanner, BadSettingsAreRefused)
   planner.duties.clear();
   vpExpectError([&] { planner.capacities(146, {crystal}); }, {"duties: number of them: 0"});
   planner.duties = {0.5};
-  vpWordFormat format;
+  vpWordScheme format;
   format.bits = 6;
   vpExpectError([&] { planner.words(146, format); }, {"bits: 6, expected 7 to 18"});
   format.header = "012";

@@ -76,6 +76,31 @@ bool alike(const vpLampObservation &a, const vpLampObservation &b)
          a.candidates.front().identifier == b.candidates.front().identifier;
 }
 
+//! How the map's words are sent, each way once.
+std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter &shutter)
+{
+  const double rowTime = shutter.rowTime > 0 ? shutter.rowTimeSigma / shutter.rowTime : 0;
+  std::vector<vpWordFormat> formats;
+  for (const vpLamp &lamp : map.lamps) {
+    const vpModulation &sent = lamp.modulation;
+    if (sent.kind != vpModulation::Kind::word) {
+      continue;
+    }
+    const size_t chips = sent.chips().size();
+    const auto same =
+        std::find_if(formats.begin(), formats.end(), [&sent, chips](const vpWordFormat &format) {
+          return format.chips == chips && format.chipRate == sent.chipRate;
+        });
+    const double tolerance = std::hypot(rowTime, 1e-6 * lamp.oscillatorPpm);
+    if (same == formats.end()) {
+      formats.push_back({chips, sent.chipRate, tolerance});
+    } else {
+      same->tolerance = std::max(same->tolerance, tolerance);
+    }
+  }
+  return formats;
+}
+
 //! The vertical of a robot that stands level, in the camera's frame.
 Eigen::Vector3d verticalInCamera(const vpHomogeneousMatrix &bMc)
 {
@@ -109,6 +134,7 @@ vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
   stripeAnalyzer.searchTwoPulses = std::any_of(map.lamps.begin(), map.lamps.end(), [](const vpLamp &lamp) {
     return lamp.modulation.kind == vpModulation::Kind::twoPulse;
   });
+  stripeAnalyzer.words = formatsOf(map, rig.shutter);
 }
 
 bool vpLedDetector::detect(const vpImage<unsigned char> &I)

@@ -75,8 +75,9 @@ void vpLedIdPlanner::checkSettings() const
 {
   const char *const probability = "a probability above 0 and below 0.5";
   demand(maxError > 0 && maxError < 0.5, "error", maxError, probability);
-  demand(minAcceptance >= 0.5 && minAcceptance < 1, "acceptance", minAcceptance,
-         "a probability from 0.5 to below 1");
+  demand(minAcceptance >= 0.5 && minAcceptance < 1 - refusedByGates(), "acceptance", minAcceptance,
+         ("a probability from 0.5 to below " + vpNumberText(1 - refusedByGates()) + ", what the gates leave")
+             .c_str());
   demand(minConfidence >= 0.5 && minConfidence < 1, "confidence", minConfidence,
          "a probability from 0.5 to below 1");
   demand(!duties.empty() && duties.size() <= 8, "duties: number of them", static_cast<double>(duties.size()),
@@ -106,10 +107,15 @@ double vpLedIdPlanner::highest() const
   return std::min(prediction.frequencyOfContrast(leastContrast), foldShare * prediction.fold());
 }
 
+double vpLedIdPlanner::refusedByGates() const
+{
+  return 2 * vpNormalTail(gate) + 2 * vpNormalTail(shapeGate);
+}
+
 double vpLedIdPlanner::neededDistance(double share) const
 {
   const double forError = 2 * vpNormalTailAt(0.5 * share * maxError);
-  const double t = vpNormalTailAt(0.5 * share * (1 - minAcceptance));
+  const double t = vpNormalTailAt(0.5 * share * (1 - minAcceptance - refusedByGates()));
   const double odds = std::log(minConfidence / (1 - minConfidence));
   return std::max(forError, t + std::sqrt(t * t + 2 * odds));
 }
@@ -193,8 +199,7 @@ vpLedIdPlan vpLedIdPlanner::judged(std::vector<vpModulation> identifiers, double
   }
   static const double far = 14; // standard deviations, from where on a neighbour does no harm
   const double odds = std::log(minConfidence / (1 - minConfidence));
-  const double gates = 4 * vpNormalTail(gate); // of two features, on both sides
-  std::vector<double> error(placed.size(), 0), refused(placed.size(), gates);
+  std::vector<double> error(placed.size(), 0), refused(placed.size(), refusedByGates());
   for (size_t i = 0; i < placed.size(); ++i) {
     for (size_t j = i + 1; j < placed.size(); ++j) {
       const double along = (placed[j].lamp->frequency - placed[i].lamp->frequency) / largestDoubt;

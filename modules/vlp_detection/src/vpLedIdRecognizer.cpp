@@ -169,7 +169,7 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   candidate.fits = true;
   auto compare = [&](double difference, double sigma) {
     candidate.weight *= normalDensity(difference / sigma, sigma);
-    candidate.fits = candidate.fits && std::abs(difference) < gate * sigma;
+    candidate.fits = candidate.fits && std::abs(difference) < shapeGate * sigma;
   };
   // Saturation widens the lit stripes.
   static const double bySaturation = 0.15;

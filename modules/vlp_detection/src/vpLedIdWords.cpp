@@ -26,7 +26,7 @@ constexpr unsigned int mostOwnBits = 12; // 4096 words, each held against all ot
   throw vpException(vpException::badValue, "words: " + problem);
 }
 
-void check(const vpWordFormat &format)
+void check(const vpWordScheme &format)
 {
   const size_t head = format.header.size();
   if (head == 0 || format.header.find_first_not_of("01") != std::string::npos) {
@@ -42,7 +42,7 @@ void check(const vpWordFormat &format)
   }
 }
 
-vpModulation wordOf(const vpWordFormat &format, const std::string &bits)
+vpModulation wordOf(const vpWordScheme &format, const std::string &bits)
 {
   vpModulation word;
   word.kind = vpModulation::Kind::word;
@@ -63,7 +63,7 @@ std::string bitsOf(unsigned int value, unsigned int count)
 }
 
 //! The greedy choice: each word in turn that is far enough from all before.
-void choose(const vpWordFormat &format, vpWordPlan &plan, std::vector<vpWordCode> &codes)
+void choose(const vpWordScheme &format, vpWordPlan &plan, std::vector<vpWordCode> &codes)
 {
   const auto own = static_cast<unsigned int>(format.bits - format.header.size());
   const vpWordCode header(wordOf(format, format.header).chips());
@@ -104,7 +104,7 @@ void judge(vpWordPlan &plan, const std::vector<vpWordCode> &codes, double distan
 }
 } // namespace
 
-vpWordPlan vpLedIdPlanner::words(double lines, const vpWordFormat &format) const
+vpWordPlan vpLedIdPlanner::words(double lines, const vpWordScheme &format) const
 {
   checkSettings();
   check(format);

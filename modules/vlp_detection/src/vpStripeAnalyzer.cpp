@@ -11,6 +11,7 @@
 
 #include "vpStripeStarts.h"
 #include "vpWaveformFit.h"
+#include "vpWordSearch.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -119,6 +120,109 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
   }
 }
 
+/*!
+  A word in place of what leaves \e unexplained of the stripes' power. It has many chips to choose: it has to
+  explain as much more as their number asks for (Schwarz 1978). Chips seen only once can follow any light:
+  such a word has to explain all but noise, and none is taken where pwm or twoPulse may yet be what the lamp
+  sends.
+*/
+std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
+                                            const std::vector<double> &envelope, int envelopeOrder,
+                                            const vpStripeAnalyzer &analyzer, double unexplained)
+{
+  static const double wordMisfit = 0.1;
+  static const double explained = 2, nearlyExplained = 3; // chi-square per degree of freedom
+  const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, analyzer.exposureTolerance},
+                            envelope);
+  const bool neither = !(unexplained < analyzer.maxMisfit);
+  std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
+  if (neither && (!word || word->inflation > explained)) {
+    const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
+    static const double clearlyLess = 0.8;
+    if (!word || (other && other->inflation < clearlyLess * word->inflation)) {
+      word = other;
+    }
+  }
+  if (!word || word->confidence < analyzer.minWordConfidence || vpWordSearch::singlePulse(word->word.chips)) {
+    return std::nullopt;
+  }
+  static const double repeated = 1.3, noise = 0.005; // share of the power that no comparison goes below
+  static const double clearly = 10;                  // in chi-square
+  const auto chips = static_cast<double>(word->word.chips.size());
+  const double span = std::abs(profile.time.back() - profile.time.front());
+  const bool once = span < repeated * chips * word->word.chip;
+  const double gain = static_cast<double>(profile.time.size()) *
+                      std::log((unexplained + noise) / (word->word.misfit + noise));
+  if (gain < 2 * M_LN2 * chips + clearly || (once && !(neither && word->inflation < nearlyExplained))) {
+    return std::nullopt;
+  }
+  return word;
+}
+
+//! What was fitted is not what it sends: a word is, where it is known.
+void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Found> &found)
+{
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  features.signal = vpStripeFeatures::Signal::coded;
+  features.frequency = features.frequencySigma = features.duty = features.dutySigma = none;
+  features.phaseDifference = features.phaseDifferenceSigma = none;
+  features.exposure = features.exposureSigma = none;
+  if (found) {
+    features.chips = vpWordFit::canonical(found->word.chips);
+    features.chipsConfidence = found->confidence;
+    features.frequency = 1 / (found->word.chip * static_cast<double>(features.chips.size()));
+    features.frequencySigma = found->durationSigma * features.frequency;
+    features.misfit = found->word.misfit;
+  }
+}
+
+//! Depth of the stripes, 0 to 1.
+double depthOf(const vpStripeProfile &profile)
+{
+  std::vector<double> sorted = profile.light;
+  std::sort(sorted.begin(), sorted.end());
+  const double low = std::max(0.0, sorted[sorted.size() / 20]);
+  const double high = sorted[sorted.size() - 1 - sorted.size() / 20];
+  return high > 0 ? std::clamp((high - low) / (high + low), 0.0, 1.0) : 0;
+}
+
+//! How many bends the envelope may have.
+int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
+{
+  static const double evenEmitter = 1.6; // the brightest stripe over the dimmest
+  static const int even = 2, uneven = 4;
+  if (peaks.size() < 2) {
+    return 0;
+  }
+  const auto [dimmest, brightest] = std::minmax_element(
+      peaks.begin(), peaks.end(), [&](size_t a, size_t b) { return profile.light[a] < profile.light[b]; });
+  const bool bent = profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
+  return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
+}
+
+//! Where stripes are too few or too blurred for what was fitted to mean much.
+void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edgesAgree)
+{
+  // Less than a period shows how long a pulse or a gap is, not how often it comes; and no fit of so few lines
+  // is put to the test.
+  static const double leastPeriods = 1.2;
+  static const double manyPeriods = 2.2; // that show three edges, wherever they begin
+  static const size_t leastLines = 8;
+  const double span = std::abs(profile.time.back() - profile.time.front());
+  const double periods = span * features.frequency;
+  if (periods < leastPeriods || (periods < manyPeriods && !edgesAgree) || profile.time.size() < leastLines) {
+    features.frequencySigma = std::max(features.frequencySigma, features.frequency);
+  }
+  // An exposure of a period or more leaves a remainder of the stripes that other exposures, duties and
+  // offsets would leave as well.
+  static const double longExposure = 0.9; // periods
+  if (profile.exposure * features.frequency > longExposure) {
+    static const double anyDuty = 0.3, cycles = 0.1; // standard deviations, of cycles over the profile
+    features.dutySigma = std::max(features.dutySigma, anyDuty);
+    features.frequencySigma = std::max(features.frequencySigma, cycles / span);
+  }
+}
+
 } // namespace
 
 vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
@@ -130,23 +234,12 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   const std::vector<size_t> peaks = vpStripeStarts::peaks(profile);
   features.stripes = static_cast<unsigned int>(peaks.size());
-  std::vector<double> sorted = profile.light;
-  std::sort(sorted.begin(), sorted.end());
-  const double low = std::max(0.0, sorted[sorted.size() / 20]);
-  const double high = sorted[sorted.size() - 1 - sorted.size() / 20];
-  features.modulation = high > 0 ? std::clamp((high - low) / (high + low), 0.0, 1.0) : 0;
+  features.modulation = depthOf(profile);
 
-  double dimmest = high, brightest = 0;
-  for (size_t line : peaks) {
-    dimmest = std::min(dimmest, profile.light[line]);
-    brightest = std::max(brightest, profile.light[line]);
-  }
-  static const double evenEmitter = 1.6;
   vpWaveformFit::Settings settings;
   settings.modelError = modelError;
   settings.exposureTolerance = exposureTolerance;
-  settings.envelopeOrder = std::clamp(static_cast<int>(peaks.size()) - 1, peaks.size() > 1 ? 2 : 0,
-                                      brightest > evenEmitter * dimmest ? 4 : 2);
+  settings.envelopeOrder = envelopeOrderOf(profile, peaks);
   const std::vector<double> envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
   std::vector<vpStripeStarts::Sinusoid> candidates =
       vpStripeStarts::periodogram(profile, envelope, modelError);
@@ -174,29 +267,14 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
       take(features, *two, true);
     }
   }
-  // Less than a period shows how long a pulse or a gap is, not how often it comes; and no fit of so few lines
-  // is put to the test.
-  static const double leastPeriods = 1.2;
-  static const double manyPeriods = 2.2; // that show three edges, wherever they begin
-  static const size_t leastLines = 8;
-  const double span = std::abs(profile.time.back() - profile.time.front());
-  const double periods = span * features.frequency;
-  if (periods < leastPeriods || (periods < manyPeriods && !pulses) || profile.time.size() < leastLines) {
-    features.frequencySigma = std::max(features.frequencySigma, features.frequency);
-  }
-  // An exposure of a period or more leaves a remainder of the stripes that other exposures, duties and offsets
-  // would leave as well.
-  static const double longExposure = 0.9; // periods
-  if (profile.exposure * features.frequency > longExposure) {
-    static const double anyDuty = 0.3, cycles = 0.1; // standard deviations, of cycles over the profile
-    features.dutySigma = std::max(features.dutySigma, anyDuty);
-    features.frequencySigma = std::max(features.frequencySigma, cycles / span);
-  }
-  if (!(features.misfit < maxMisfit)) {
-    features.signal = vpStripeFeatures::Signal::coded;
-    const double none = std::numeric_limits<double>::quiet_NaN(); // what was fitted is not what it sends
-    features.frequency = features.frequencySigma = features.duty = features.dutySigma = none;
-    features.phaseDifference = features.phaseDifferenceSigma = none;
+  widen(features, profile, pulses.has_value());
+  static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
+  if (!(features.misfit < beyondDoubt)) {
+    const std::optional<vpWordSearch::Found> word =
+        findWord(profile, envelope, settings.envelopeOrder, *this, features.misfit);
+    if (word || !(features.misfit < maxMisfit)) {
+      takeCoded(features, word);
+    }
   }
   return features;
 }

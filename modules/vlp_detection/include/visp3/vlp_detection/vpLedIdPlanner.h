@@ -26,7 +26,7 @@ struct VISP_EXPORT vpLedIdPlan {
 };
 
 //! How the words of a plan look: a header that marks where they begin, and bits of their own.
-struct VISP_EXPORT vpWordFormat {
+struct VISP_EXPORT vpWordScheme {
   std::string header = "011110"; // '0' and '1'; of Guan's group, JLT 2021
   unsigned int bits = 14;        // of the whole word
   double chipRate = 8000;        // Hz
@@ -72,11 +72,12 @@ struct VISP_EXPORT vpLedIdReuse {
 
   Error. Of neighbours on both sides, 2 Q(d / 2) <= maxError: d >= 6.6 for 1 in 1000.
 
-  Acceptance. vpLedIdRecognizer gives an id where its probability reaches c = minConfidence. With a neighbour
-  at d, a measurement that is e off towards it leaves odds of exp(d (d - 2 e) / 2), enough up to
-  e = d / 2 - ln(c / (1 - c)) / d. So a share of 2 Q(e) is refused, and to accept `minAcceptance` takes
-  d >= t + sqrt(t^2 + 2 ln(c / (1 - c))) with Q(t) = (1 - minAcceptance) / 2: 6.5 for 99.5 %. The gates of
-  two neighbours (4 standard deviations each) may overlap: between them the odds decide, not the gates.
+  Acceptance. vpLedIdRecognizer's gates refuse 2 Q(gate) + 2 Q(shapeGate) whatever the neighbours, and it
+  gives an id where its probability reaches c = minConfidence. With a neighbour at d, a measurement that is e
+  off towards it leaves odds of exp(d (d - 2 e) / 2), enough up to e = d / 2 - ln(c / (1 - c)) / d. So a share
+  of 2 Q(e) is refused beside what the gates refuse, and to accept `minAcceptance` takes
+  d >= t + sqrt(t^2 + 2 ln(c / (1 - c))), 2 Q(t) being what is left to refuse: 7.4 for 99.5 %. The gates of
+  two neighbours may overlap: between them the odds decide, not the gates.
 
   Where several duties are used, neighbours in frequency get nine tenths of the error and neighbours in duty
   one tenth, or less where that is not enough: frequencies are what there is to save. Of each duty the longest
@@ -89,8 +90,8 @@ public:
   vpStripePrediction prediction;
   double maxError = 1e-3;                       // probability of a wrong id, of each lamp
   double minAcceptance = 0.995;                 // probability of any id, of each lamp
-  double minConfidence = 0.95;                  // as vpLedIdRecognizer::minConfidence
-  double gate = 4;                              // standard deviations, as vpLedIdRecognizer::gate
+  double minConfidence = 0.99;                  // as vpLedIdRecognizer::minConfidence
+  double gate = 3, shapeGate = 4;               // standard deviations, as vpLedIdRecognizer's
   std::vector<double> duties = {0.2, 0.5, 0.8}; // that lamps may have, at most 8
   //! Hz; NaN: that of `leastStripes` on the lamp, yet at least `flicker`.
   double lowestFrequency = std::numeric_limits<double>::quiet_NaN();
@@ -112,6 +113,9 @@ public:
 
   //! Distance (standard deviations) that neighbours need who may cause so great a share of error and refusal.
   double neededDistance(double share = 1) const;
+
+  //! Share of lamps that the recogniser's gates refuse, whatever their neighbours.
+  double refusedByGates() const;
 
   /*!
     As many identifiers as the rig holds, for lamps of so many lines (the smallest that has to be told) whose
@@ -144,7 +148,7 @@ public:
     and n the lines that see each chip, in all repetitions; `error` sums Q of half of it over all words and
     rotations. \throw vpException (badValue) where the format is out of its range.
   */
-  vpWordPlan words(double lines, const vpWordFormat &format) const;
+  vpWordPlan words(double lines, const vpWordScheme &format) const;
 
   /*!
     All pairs of identifiers of a map that could be taken for each other, the likeliest first; pwm, twoPulse

@@ -32,14 +32,16 @@ struct VISP_EXPORT vpRowTimeError {
   each lamp is judged by what all others leave of d, integrated on a grid. So two lamps of a rig whose row
   time is known to 1 % calibrate it for each other.
 
-  An identifier that lies within `gate` standard deviations in every feature is a candidate. One that has at
+  An identifier that lies within `gate` standard deviations in frequency, and `shapeGate` in duty and phase
+  difference, is a candidate. One that has at
   least `minConfidence` and a single lamp gives the id. What several lamps of one identifier leave open, or
   several candidates, is for geometry to decide: `candidates` hands them on.
 */
 class VISP_EXPORT vpLedIdRecognizer
 {
 public:
-  double gate = 3;                // standard deviations, on each feature
+  double gate = 3;                // standard deviations, on the frequency
+  double shapeGate = 4;           // standard deviations, on duty and phase difference
   double minConfidence = 0.99;    // probability below which no id is given
   double maxFrequencyDoubt = 0.1; // share of the frequency: less certain stripes are recognised as nothing
   double dutyError = 0.03;        // systematic error of a measured duty, standard deviation

@@ -33,6 +33,13 @@ struct VISP_EXPORT vpStripeProfile {
                                const vpOutlineFit &fit, const vpLedRoi &roi);
 };
 
+//! How the words of a map's lamps are sent: what is known of a word before its chips are.
+struct VISP_EXPORT vpWordFormat {
+  size_t chips = 0;     // of one repetition
+  double chipRate = 0;  // Hz
+  double tolerance = 0; // of the chip rate as the camera sees it, standard deviation as a share of it
+};
+
 /*!
   What the stripes say: maximum likelihood over the line profile, and the posterior about it.
 
@@ -43,20 +50,33 @@ struct VISP_EXPORT vpStripeProfile {
   bell where lines leave gaps between their exposures. The exposure has the rig's value as prior, since blur
   and a phone's tone curve soften the edges as well. The variance of a line is that of its pixels plus shares
   of its light and of its neighbours', for all that the model leaves out.
+
+  Where one or two pulses a period leave too much unexplained, the lamp may send a word: chips of equal
+  duration, lit or dark, over and over. A line's light is then its share of lit chips, and the likeliest of
+  all words comes from dynamic programming over the chips that neighbouring lines share (Viterbi 1967), for
+  each phase and duration of a chip on a grid, both refined by least squares. A word of the map's formats
+  (`words`) has to be seen once from end to end; any other so long that its repetition is no chance (1.3
+  times, and 16 chips twice, 21 of a Manchester code). Its probability weighs it against all words that differ
+  in a chip, each fitted anew.
 */
 class VISP_EXPORT vpStripeAnalyzer
 {
 public:
   double modelError = 0.03;       // share of a line's light that the model may be off by, standard deviation
   double exposureTolerance = 0.5; // standard deviation of the exposure about the rig's, as a share of it
-  //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained. Between the little that
-  //! there is: pwm lamps of phones leave up to 0.09, coded lamps seen for less than a word from 0.165 on.
+  //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained; no word of unknown format
+  //! is sought below. Between the little that there is: pwm lamps of phones leave up to 0.09, coded lamps
+  //! seen for less than a word from 0.165 on.
   double maxMisfit = 0.13;
   double minModulation = 0.05; // depth of stripes below which a lamp counts as unmodulated
   bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
   double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
 
-  //! Signal, frequency, duty, phase difference, stripes, modulation, misfit; area is left to the caller.
+  double minWordConfidence = 0.99; // probability that all chips of a word are right below which none is given
+  std::vector<vpWordFormat> words; // that the map's lamps send; of other formats it takes more to be sure
+
+  //! Signal, frequency, duty, phase difference, chips, stripes, modulation, misfit; area is left to the
+  //! caller.
   vpStripeFeatures analyze(const vpStripeProfile &profile) const;
 };
 
