@@ -15,6 +15,8 @@
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
+#include "vpStripeLimits.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -243,9 +245,7 @@ vpStripeDoubt vpStripePrediction::hiddenEdgesAt(const vpModulation &modulation, 
   if (exposure >= m_lineTime) {
     return {};
   }
-  // Walls of a gap are no sharper than that, as vpStripeAnalyzer has it.
-  static const double untrue = 0.03;
-  const double seen = untrue * std::max(0.0, m_lineTime - m_exposure);
+  const double seen = vpStripeLimits::untrue * std::max(0.0, m_lineTime - m_exposure);
   const double f = modulation.frequency;
   const auto [first, n] = linesUnder(lines, trial);
   Room room;
@@ -269,6 +269,20 @@ vpStripeDoubt vpStripePrediction::hiddenEdges(const vpModulation &modulation, do
   }
   worst.phaseDifference = worst.duty;
   return worst;
+}
+
+//! Doubt of the duty where the stripes would be the same with pulse and exposure exchanged.
+double vpStripePrediction::takenForExposure(const vpModulation &modulation) const
+{
+  const double duty = modulation.duty.value_or(0.5),
+               pulses = modulation.kind == vpModulation::Kind::twoPulse ? 2 : 1;
+  const double other = pulses * modulation.frequency * m_exposure; // duty
+  static const double whole = 0.98;
+  if (other > whole) {
+    return 0;
+  }
+  const double less = vpStripeLimits::unlikely(duty / other, other) - vpStripeLimits::unlikely(1, duty);
+  return less < 0 ? std::abs(other - duty) : vpStripeLimits::spread(other - duty, less);
 }
 
 vpStripeDoubt vpStripePrediction::shapeSigma(const vpModulation &modulation, double lines) const
@@ -300,10 +314,7 @@ vpStripeDoubt vpStripePrediction::shapeSigma(const vpModulation &modulation, dou
   vpStripeDoubt sigma;
   sigma.duty = margin * std::sqrt(covariance(ofDuty, ofDuty));
   sigma.phaseDifference = margin * std::sqrt(covariance(ofDifference, ofDifference));
-  // Pulse and exposure are both boxes, and which is which the stripes do not say: the shorter one is the
-  // exposure, as a rule.
-  const double d = modulation.duty.value_or(0.5), shortest = std::min(d, 1 - d);
-  sigma.duty = std::hypot(sigma.duty, std::max(0.0, modulation.frequency * m_exposure - shortest));
+  sigma.duty = std::hypot(sigma.duty, takenForExposure(modulation));
   return sigma;
 }
 

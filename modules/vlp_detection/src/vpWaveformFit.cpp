@@ -10,6 +10,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "vpStripeLimits.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -315,13 +317,10 @@ void vpWaveformFit::descend(int iterations)
   m_cost = cost(m_x, true);
 }
 
-//! How far an exposure (s) and a pulse (periods) are from what they should be: a chi-square.
-double vpWaveformFit::unlikely(double exposed, double pulse) const
+//! Chi-square of a pulse and an exposure, and not each the other.
+double vpWaveformFit::unlikely(const Vector &x) const
 {
-  static const double misstated = 0.15; // of the exposure's logarithm, standard deviation
-  static const double usual = 0.3;      // of the duty
-  return std::pow(std::log(exposed / m_profile->exposure) / misstated, 2) +
-         std::pow((pulse * pulses() - 0.5) / usual, 2);
+  return vpStripeLimits::unlikely(x(exposure) / m_profile->exposure, x(duty));
 }
 
 //! What pulse and exposure would be were each taken for the other.
@@ -342,8 +341,7 @@ std::optional<vpWaveformFit::Vector> vpWaveformFit::exchanged() const
 bool vpWaveformFit::preferStatedExposure()
 {
   const std::optional<Vector> other = exchanged();
-  if (!other || unlikely(m_x(exposure), m_x(duty) / pulses()) <=
-                    unlikely((*other)(exposure), (*other)(duty) / pulses())) {
+  if (!other || unlikely(m_x) <= unlikely(*other)) {
     return true;
   }
   // The fit from there may find its way back.

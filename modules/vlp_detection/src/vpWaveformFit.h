@@ -90,7 +90,7 @@ private:
     return parameter == phaseDifference ? m_settings.twoPulse : parameter != exposure || m_freeExposure;
   }
   double pulses() const { return m_settings.twoPulse ? 2 : 1; } // of a period
-  double unlikely(double exposed, double pulse) const;
+  double unlikely(const Vector &x) const;
   std::optional<Vector> exchanged() const;
   void keepPossible(Vector &x) const;
   double prior(int parameter, double &mean) const;

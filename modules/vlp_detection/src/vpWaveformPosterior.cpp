@@ -10,6 +10,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "vpStripeLimits.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -75,18 +77,13 @@ void vpWaveformFit::integrate()
     posterior = sampled(posterior, 3 * many, inflation); // few of which count: it is the smaller one
   }
   m_x = posterior.mean;
-  // Walls of such a posterior are as sharp as the noise is low, sharper than any model of a lamp and its
-  // edges is true.
-  static const double untrue = 0.03; // share of a gap
-  const double misplaced = untrue * std::max(0.0, m_line - m_profile->exposure) * m_x(frequency); // periods
+  const double misplaced =
+      vpStripeLimits::untrue * std::max(0.0, m_line - m_profile->exposure) * m_x(frequency); // periods
   Vector doubt = Vector::Zero();
   doubt(duty) = doubt(phaseDifference) = misplaced;
   doubt(frequency) = misplaced / m_half;
   if (const std::optional<Vector> other = exchanged()) {
-    // Pulse and exposure may be each other. With odds of 1 : q the duty is spread by sqrt(q) / (1 + q).
-    const double q = std::exp(-0.5 * std::abs(unlikely((*other)(exposure), (*other)(duty) / pulses()) -
-                                              unlikely(m_x(exposure), m_x(duty) / pulses())));
-    const double spread = std::sqrt(q) / (1 + q) * ((*other)(duty)-m_x(duty));
+    const double spread = vpStripeLimits::spread((*other)(duty)-m_x(duty), unlikely(*other) - unlikely(m_x));
     doubt(duty) = std::hypot(doubt(duty), spread);
   }
   m_sigma = (posterior.covariance.diagonal().cwiseMax(0) + doubt.cwiseAbs2()).cwiseSqrt();

@@ -46,7 +46,7 @@ public:
   double maxFrequencyDoubt = 0.1; // share of the frequency: less certain stripes are recognised as nothing
   double dutyError = 0.03;        // systematic error of a measured duty, standard deviation
   double phaseError = 0.01;       // of a measured phase difference, periods
-  double unknownPrior = 0.01;     // prior probability that a blinking region is none of the map's lamps
+  double unknownPrior = 0.001;    // prior probability that a blinking region is none of the map's lamps
 
   vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutter &shutter);
 

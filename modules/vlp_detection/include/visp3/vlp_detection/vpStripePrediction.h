@@ -118,6 +118,7 @@ private:
                               double negligible) const;
   vpStripeDoubt sum(const vpModulation &modulation, double lines, double oscillatorPpm,
                     const vpStripeDoubt &shape, const vpStripeDoubt &hidden) const;
+  double takenForExposure(const vpModulation &modulation) const;
   std::pair<size_t, size_t> linesUnder(double lines, int trial) const;
 
   std::vector<double> m_middle; // s, of each delivered line's exposure, ascending

@@ -1,0 +1,49 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpStripeLimits_h
+#define vpStripeLimits_h
+
+#include <cmath>
+
+#include <visp3/vlp_core/vpVlpNamespace.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  What stripes cannot tell, however little noise there is: for the fit that has to say so, and for the planner
+  that keeps lamps away from it.
+*/
+namespace vpStripeLimits
+{
+/*!
+  Share of a gap between two exposures within which the edge of a pulse cannot be placed. The walls of such a
+  posterior are as sharp as the noise is low, sharper than any model of a lamp and its edges is true.
+*/
+constexpr double untrue = 0.02;
+
+/*!
+  Pulse and exposure are both boxes, and which is which the stripes do not say: how far an exposure and a
+  pulse are from what they should be, a chi-square. \param exposure As a share of the stated one. \param duty
+  Lit share of the period.
+*/
+inline double unlikely(double exposure, double duty)
+{
+  const double misstated = 0.15; // of the exposure's logarithm, standard deviation
+  const double usual = 0.3;      // of the duty
+  return std::pow(std::log(exposure) / misstated, 2) + std::pow((duty - 0.5) / usual, 2);
+}
+
+//! Standard deviation that a choice between two values leaves, the one \e difference in chi-square less
+//! likely than the other.
+inline double spread(double values, double difference)
+{
+  const double odds = std::exp(-0.5 * std::abs(difference));
+  return std::sqrt(odds) / (1 + odds) * std::abs(values);
+}
+} // namespace vpStripeLimits
+
+END_VISP_NAMESPACE
+
+#endif
