@@ -2,7 +2,8 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// How many identifiers single frames tell apart: lamps of a map, each seen once, one lamp a frame or several.
+// How many identifiers single frames tell apart: planned lamps, each seen once, one lamp a frame or several.
+// To be run from the top of the repository.
 
 #include <algorithm>
 #include <atomic>
@@ -10,22 +11,21 @@
 #include <cstdlib>
 #include <mutex>
 
+#include <visp3/vlp_core/vpVlpRig.h>
+#include <visp3/vlp_detection/vpLedIdPlanner.h>
 #include <visp3/vlp_detection/vpLedIdRecognizer.h>
 
 #include "vpSimulatedStripes.h"
 
 namespace
 {
-//! PWM lamps at even steps from \e lowest to \e highest, Hz, with duties in turn.
-vpLampMap lampsOf(int count, double lowest, double highest, const std::vector<double> &duties)
+vpLampMap mapOf(const std::vector<vpModulation> &identifiers)
 {
   vpLampMap map;
-  for (int k = 0; k < count; ++k) {
+  for (const vpModulation &modulation : identifiers) {
     vpLamp lamp;
-    lamp.id = std::to_string(k);
-    lamp.modulation.kind = vpModulation::Kind::pwm;
-    lamp.modulation.frequency = lowest + (highest - lowest) * k / (count - 1);
-    lamp.modulation.duty = duties[static_cast<size_t>(k) % duties.size()];
+    lamp.id = std::to_string(map.lamps.size());
+    lamp.modulation = modulation;
     map.lamps.push_back(lamp);
   }
   return map;
@@ -85,17 +85,44 @@ void run(const Setting &setting, int frames)
 int main(int argc, char **argv)
 {
   const int frames = argc > 1 ? std::atoi(argv[1]) : 20000;
+  static const double rowTimeSigma = 5e-5, crystal = 50; // share of the row time; ppm
   vpSimulatedStripes full, nearest;
   nearest.lines = 57;
   nearest.step = 2.56;
+  auto plannerOf = [](const char *rigFile, double highest) {
+    vpVlpRig rig = vpVlpRig::load(rigFile);
+    rig.shutter.rowTimeSigma = rowTimeSigma * rig.shutter.rowTime;
+    vpLedIdPlanner planner(rig);
+    planner.lowestFrequency = 500;
+    planner.highestFrequency = highest;
+    return planner;
+  };
+  const vpLedIdPlanner large = plannerOf("data/rigs/ub300-2048x1536.yaml", 7000),
+                       small = plannerOf("data/rigs/ub300-800x600.yaml", 3900);
+  const vpLampMap fiveHundred = mapOf(large.spread(full.lines, crystal, 500).identifiers);
+  const vpLampMap fifty = mapOf(large.spread(full.lines, crystal, 50).identifiers);
+  std::printf("stripe counting in the same ranges: %zu and %zu\n", large.bins(full.lines),
+              small.bins(nearest.lines));
   std::printf("%-44s %5s %7s %9s %9s %9s   %s\n", "", "ids", "lamps", "right %", "wrong %", "none %",
-              "rms Hz, in own sigmas (oscillator and 50 ppm included)");
-  for (const std::vector<double> &duties : {std::vector<double>{0.5}, std::vector<double>{0.3, 0.5, 0.7}}) {
-    run({"2048x1536, row time known to 0.005 %", full, 5e-5, 1, lampsOf(500, 500, 7000, duties)}, frames);
-    run({"800x600 nearest, row time known to 0.005 %", nearest, 5e-5, 1, lampsOf(150, 500, 3900, duties)},
-        frames);
-    run({"2048x1536, row time to 1 %, four in view", full, 1e-2, 4, lampsOf(500, 500, 7000, duties)},
-        frames / 4);
+              "rms Hz, in own sigmas (oscillator included)");
+  run({"2048x1536, row time to 0.005 %", full, rowTimeSigma, 1, fiveHundred}, frames);
+  run({"2048x1536, all that the planner finds", full, rowTimeSigma, 1,
+       mapOf(large.largest(full.lines, crystal).identifiers)},
+      frames);
+  run({"800x600 nearest, row time to 0.005 %", nearest, rowTimeSigma, 1,
+       mapOf(small.spread(nearest.lines, crystal, 150).identifiers)},
+      frames);
+  run({"800x600 nearest, all that the planner finds", nearest, rowTimeSigma, 1,
+       mapOf(small.largest(nearest.lines, crystal).identifiers)},
+      frames);
+  for (const vpLampMap *map : {&fifty, &fiveHundred}) {
+    for (double known : {1e-3, 1e-2}) {
+      for (int inView : {1, 2, 4}) {
+        char name[80];
+        std::snprintf(name, sizeof name, "2048x1536, row time to %g %%, %d in view", 100 * known, inView);
+        run({name, full, known, inView, *map}, frames / 5);
+      }
+    }
   }
   return 0;
 }
