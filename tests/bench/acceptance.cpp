@@ -158,8 +158,10 @@ void strangers(const Map &map, int lamps, double apart)
   std::fflush(stdout);
 }
 
-//! Lamps that never blink, windows with crossbars, and pictures of nothing but noise and shades.
-vpImage<unsigned char> steadyPicture(const vpVlpRig &rig, std::mt19937_64 &generator)
+enum class Steady { lamps, barred, noise };
+
+//! Lamps that never blink and windows; windows with crossbars.
+vpImage<unsigned char> steadyPicture(const vpVlpRig &rig, bool barred, std::mt19937_64 &generator)
 {
   std::uniform_real_distribution<double> uniform(0, 1);
   vpSimulatedCamera camera;
@@ -171,7 +173,7 @@ vpImage<unsigned char> steadyPicture(const vpVlpRig &rig, std::mt19937_64 &gener
   for (int k = 0; k < 12; ++k) {
     const double x = 0.5 * (k % 4 - 1.5) + 0.1 * uniform(generator),
                  y = 0.5 * (k / 4 - 1) + 0.1 * uniform(generator);
-    if (uniform(generator) < 0.6) {
+    if (!barred && uniform(generator) < 0.7) {
       vpSimulatedLamp lamp;
       lamp.lamp.id = std::to_string(k);
       lamp.lamp.position = Eigen::Vector3d(x, y, 1.5);
@@ -185,8 +187,8 @@ vpImage<unsigned char> steadyPicture(const vpVlpRig &rig, std::mt19937_64 &gener
       scene.lamps.push_back(lamp);
     } else {
       // Panes side by side and above each other: the bars between them are dark stripes.
-      const int across = 1 + static_cast<int>(3 * uniform(generator)),
-                down = 1 + static_cast<int>(4 * uniform(generator));
+      const int across = barred ? 1 + static_cast<int>(3 * uniform(generator)) : 1,
+                down = barred ? 2 + static_cast<int>(3 * uniform(generator)) : 1;
       const double turn = uniform(generator) < 0.5 ? 0 : 3 * uniform(generator),
                    level = 40 + 400 * uniform(generator);
       const Eigen::Vector3d right(0.15 * std::cos(turn), 0.15 * std::sin(turn), 0),
@@ -238,7 +240,7 @@ vpImage<unsigned char> noisePicture(const vpVlpRig &rig, std::mt19937_64 &genera
   return I;
 }
 
-void steady(const std::vector<Map> &all, int least, bool noise)
+void steady(const std::vector<Map> &all, int least, Steady kind)
 {
   vpVlpRig rig;
   rig.width = 800;
@@ -256,8 +258,11 @@ void steady(const std::vector<Map> &all, int least, bool noise)
   while (regions < least && picture < least) {
     static const int atOnce = 100;
     vpRunTrials(atOnce, [&](int trial, std::mt19937_64 &) {
-      std::mt19937_64 generator(static_cast<unsigned>(picture + trial) + (noise ? 1000000u : 0u));
-      const vpImage<unsigned char> I = noise ? noisePicture(rig, generator) : steadyPicture(rig, generator);
+      std::mt19937_64 generator(static_cast<unsigned>(picture + trial) +
+                                1000000u * static_cast<unsigned>(kind));
+      const vpImage<unsigned char> I = kind == Steady::noise
+                                           ? noisePicture(rig, generator)
+                                           : steadyPicture(rig, kind == Steady::barred, generator);
       vpLedDetector detector(rig, all.front().map);
       detector.detect(I);
       const std::lock_guard<std::mutex> lock(guard);
@@ -269,15 +274,17 @@ void steady(const std::vector<Map> &all, int least, bool noise)
         std::vector<vpLampObservation> lamps = detector.observations();
         recognizers[m].recognize(lamps);
         for (const vpLampObservation &lamp : lamps) {
-          accepted[m] += !lamp.id.empty();
+          accepted[m] += !lamp.id.empty() && lamp.outline.shape != vpLampOutline::Shape::region;
         }
       }
     });
     picture += atOnce;
   }
   std::printf("%d regions of %s (%d pictures), %.2f %% with stripes; accepted:", regions,
-              noise ? "noise and shades" : "steady lamps and windows", picture,
-              100. * blinking / std::max(1, regions));
+              kind == Steady::noise    ? "noise and shades"
+              : kind == Steady::barred ? "windows with crossbars"
+                                       : "steady lamps and windows",
+              picture, 100. * blinking / std::max(1, regions));
   for (size_t m = 0; m < all.size(); ++m) {
     std::printf(" %d (%zu lamps, duty %s)", accepted[m], all[m].map.lamps.size(), all[m].duties);
   }
@@ -298,7 +305,8 @@ int main(int argc, char **argv)
       strangers(map, lamps, apart);
     }
   }
-  steady(all, lamps / 2, false);
-  steady(all, lamps / 2, true);
+  steady(all, lamps / 2, Steady::lamps);
+  steady(all, lamps / 2, Steady::noise);
+  steady(all, lamps / 2, Steady::barred);
   return 0;
 }

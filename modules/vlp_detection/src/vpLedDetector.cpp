@@ -155,6 +155,14 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I)
   if (joinPieces(picture, rois)) {
     m_rowTimeError = recognizer.recognize(m_observations);
   }
+  for (vpLampObservation &lamp : m_observations) {
+    if (lamp.outline.shape == vpLampOutline::Shape::region && !lamp.candidates.empty()) {
+      lamp.id.clear();
+      lamp.candidates.clear();
+      lamp.confidence = 1; // as that of all without a candidate
+      lamp.remark = "blinks as a lamp of the map, but has no outline of one";
+    }
+  }
   std::stable_sort(m_observations.begin(), m_observations.end(),
                    [](const vpLampObservation &a, const vpLampObservation &b) {
                      return a.features.area > b.features.area;

@@ -210,7 +210,18 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
   static const size_t leastLines = 8;
   const double span = std::abs(profile.time.back() - profile.time.front());
   const double periods = span * features.frequency;
-  if (periods < leastPeriods || (periods < manyPeriods && !edgesAgree) || profile.time.size() < leastLines) {
+  // Two stripes are soon explained: what is none, a shaded wall, leaves more of itself unexplained than a
+  // lamp.
+  static const double few = 2, fewMisfit = 0.03, enough = 3, enoughMisfit = 0.09;
+  const double most =
+      periods > enough
+          ? 1
+          : fewMisfit + (enoughMisfit - fewMisfit) * std::clamp((periods - few) / (enough - few), 0.0, 1.0);
+  // Nor is what hardly ever shines, or hardly ever does not: a dim rim, a crossbar.
+  static const double leastDuty = 0.05;
+  const bool shines = std::min(features.duty, 1 - features.duty) > leastDuty;
+  if (!shines || periods < leastPeriods || (periods < manyPeriods && !edgesAgree) ||
+      profile.time.size() < leastLines || features.misfit > most) {
     features.frequencySigma = std::max(features.frequencySigma, features.frequency);
   }
   // An exposure of a period or more leaves a remainder of the stripes that other exposures, duties and
@@ -244,7 +255,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   std::vector<vpStripeStarts::Sinusoid> candidates =
       vpStripeStarts::periodogram(profile, envelope, modelError);
   if (candidates.empty() || candidates.front().gain < minSignificance ||
-      features.modulation < minModulation) {
+      features.modulation < minModulation || profile.agreement < minAgreement) {
     return features;
   }
   candidates.resize(std::min<size_t>(candidates.size(), 3));

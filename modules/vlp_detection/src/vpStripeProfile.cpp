@@ -152,6 +152,51 @@ void addLine(vpStripeProfile &profile, const cv::Mat_<unsigned char> &lines, con
   profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(squares));
 }
 
+/*!
+  Correlation over the lines of what their left and right halves show, pixel noise taken off: 1 where light
+  that varies from line to line does so on the whole of each line, as a shutter's stripes do.
+*/
+double agreementOfHalves(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords,
+                         const Falloff &falloff, const vpOutlineFit &fit)
+{
+  static const int fewest = 8; // samples of a line
+  struct Sums {
+    double weight = 0, left = 0, right = 0, leftLeft = 0, rightRight = 0, leftRight = 0, noise = 0;
+  } sums;
+  for (const Chord &chord : chords) {
+    const int count = chord.last - chord.first + 1, half = count / 2;
+    if (count < fewest) {
+      continue;
+    }
+    auto meanOf = [&](int first) {
+      double light = 0, squares = 0;
+      for (int x = first; x < first + half; ++x) {
+        const double dimmed = falloff.at(x, chord.line);
+        light += dimmed * (lines(chord.line, x) - fit.background);
+        squares += dimmed * dimmed;
+      }
+      return light / squares;
+    };
+    const double left = meanOf(chord.first), right = meanOf(chord.last - half + 1), weight = count;
+    sums.weight += weight;
+    sums.left += weight * left;
+    sums.right += weight * right;
+    sums.leftLeft += weight * left * left;
+    sums.rightRight += weight * right * right;
+    sums.leftRight += weight * left * right;
+    sums.noise += weight * fit.noise * fit.noise / half;
+  }
+  if (!(sums.weight > 0)) {
+    return 1;
+  }
+  const double left = sums.left / sums.weight, right = sums.right / sums.weight,
+               noise = sums.noise / sums.weight;
+  const double leftVariance = sums.leftLeft / sums.weight - left * left - noise,
+               rightVariance = sums.rightRight / sums.weight - right * right - noise;
+  const double common = sums.leftRight / sums.weight - left * right;
+  return common / std::sqrt(std::max(leftVariance * rightVariance, 1e-12));
+}
+
 //! Whether most of some line is white.
 bool hasWhiteLines(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
 {
@@ -203,6 +248,7 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
     profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
     addLine(profile, lines, chord, falloff, fit);
   }
+  profile.agreement = agreementOfHalves(lines, chords, falloff, fit);
   return profile;
 }
 

@@ -40,13 +40,13 @@ struct VISP_EXPORT vpRowTimeError {
 class VISP_EXPORT vpLedIdRecognizer
 {
 public:
-  double gate = 3;                // standard deviations, on the frequency
-  double shapeGate = 4;           // standard deviations, on duty and phase difference
-  double minConfidence = 0.99;    // probability below which no id is given
-  double maxFrequencyDoubt = 0.1; // share of the frequency: less certain stripes are recognised as nothing
-  double dutyError = 0.03;        // systematic error of a measured duty, standard deviation
-  double phaseError = 0.01;       // of a measured phase difference, periods
-  double unknownPrior = 0.001;    // prior probability that a blinking region is none of the map's lamps
+  double gate = 3;                 // standard deviations, on the frequency
+  double shapeGate = 4;            // standard deviations, on duty and phase difference
+  double minConfidence = 0.99;     // probability below which no id is given
+  double maxFrequencyDoubt = 0.03; // share of the frequency: less certain stripes are recognised as nothing
+  double dutyError = 0.03;         // systematic error of a measured duty, standard deviation
+  double phaseError = 0.01;        // of a measured phase difference, periods
+  double unknownPrior = 0.001;     // prior probability that a blinking region is none of the map's lamps
 
   vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutter &shutter);
 

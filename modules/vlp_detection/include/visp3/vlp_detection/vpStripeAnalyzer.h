@@ -20,6 +20,7 @@ struct VISP_EXPORT vpStripeProfile {
   std::vector<double> light; // grey levels above the lamp's surroundings
   std::vector<double> sigma; // grey levels, of light by pixel noise
   double exposure = 0;       // s, of each line, averaging by a resize included
+  double agreement = 1;      // correlation, over the lines, of their left and right halves
 
   /*!
     Profile inside an outline (in samples and lines, as the fitter gives it). Of an ellipse, each line's light
@@ -68,6 +69,7 @@ public:
   //! is sought below. Between the little that there is: pwm lamps of phones leave up to 0.09, coded lamps
   //! seen for less than a word from 0.165 on.
   double maxMisfit = 0.13;
+  double minAgreement = 0.85;  // of the halves of lines: what varies along a line is no shutter's work
   double minModulation = 0.05; // depth of stripes below which a lamp counts as unmodulated
   bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
   double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
