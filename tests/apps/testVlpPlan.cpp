@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_detection/vpLedIdPlanner.h>
 
 #include "common/vpProcess.h"
 
@@ -60,8 +61,9 @@ TEST_F(VlpPlan, HelpHasExamplesAndExitCodes)
 {
   vpProcess help("vlp-plan", {"--help"});
   EXPECT_EQ(help.wait(), done);
-  for (const char *part : {"Examples:", "--heights FROM:TO", "above the camera, not above the floor",
-                           "--check FILE", "Exit code: 0 done; 2 bad usage"}) {
+  for (const char *part :
+       {"Examples:", "--heights FROM:TO", "above the camera, not above the floor", "--check FILE",
+        "--reuse N", "smallest circle around the rays", "Exit code: 0 done; 2 bad usage"}) {
     EXPECT_NE(help.out().find(part), std::string::npos) << part;
   }
 }
@@ -137,6 +139,58 @@ TEST_F(VlpPlan, DrawsThePicture)
   EXPECT_EQ(folder.count(), 1u);
 }
 
+TEST_F(VlpPlan, LaysFewIdentifiersOverManyLamps)
+{
+  std::string places = "id,x_m,y_m,z_m\n"; // a grid of 1.5 m
+  for (int k = 0; k < 64; ++k) {
+    places += "L" + std::to_string(k) + "," + std::to_string(1.5 * (k % 8)) + "," +
+              std::to_string(1.5 * (k / 8)) + ",3\n";
+  }
+  const std::string csv = folder.write("places.csv", places);
+  const std::vector<std::string> arguments = {"--rig", rig,       "--place", csv,     "--diameter",
+                                              "0.3",   "--reuse", "16",      "--out", folder / "out"};
+  vpProcess plan("vlp-plan", arguments);
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+  const vpLampMap map = vpLampMap::load(folder / "out");
+  ASSERT_EQ(map.lamps.size(), 64u);
+  EXPECT_EQ(map.lamps[9].id, "L9");
+  EXPECT_EQ(map.lamps[9].position, Eigen::Vector3d(1.5, 1.5, 3));
+  EXPECT_EQ(map.identifiers().size(), 16u);
+  // 800 x 600 pixels of 1 / 488.28 at 2.81 m: half a diagonal of 2.87 m.
+  const std::vector<std::string> rows = {"lamps                                                   64",
+                                         "identifiers                        "
+                                         "                     16",
+                                         "radius of a view, m                                     2.87",
+                                         "least distance between two lamps of one identifier, m  "};
+  for (const std::string &row : rows) {
+    EXPECT_NE(plan.out().find(row), std::string::npos) << plan.out() << "expected: " << row;
+  }
+  const vpLedIdReuse nearest = vpLedIdPlanner::reuse(map).front();
+  const std::string two = "(" + map.lamps[nearest.first].id + ", " + map.lamps[nearest.second].id + ")";
+  EXPECT_NE(plan.out().find(two), std::string::npos) << plan.out() << "expected: " << two;
+
+  vpProcess again("vlp-plan", arguments);
+  EXPECT_EQ(again.wait(), done) << again.err();
+  EXPECT_EQ(again.out(), plan.out());
+
+  vpProcess check("vlp-plan", {"--rig", rig, "--check", folder / "out"});
+  EXPECT_EQ(check.wait(), done) << check.err();
+  EXPECT_NE(check.out().find("Identifiers that lamps share (16)"), std::string::npos) << check.out();
+}
+
+TEST_F(VlpPlan, ReusesWordsInAViewOfItsOwn)
+{
+  vpProcess plan("vlp-plan", {"--rig", rig, "--place", hall, "--heights", "1.2:1.5", "--words", "--reuse",
+                              "12", "--view-radius", "4.5", "--out", folder / "out"});
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+  const vpLampMap map = vpLampMap::load(folder / "out");
+  ASSERT_EQ(map.lamps.size(), 30u);
+  EXPECT_EQ(map.identifiers().size(), 12u);
+  EXPECT_EQ(map.lamps[0].modulation.bits.rfind("011110", 0), 0u);
+  EXPECT_NE(plan.out().find("radius of a view, m                                     4.5"), std::string::npos)
+      << plan.out();
+}
+
 TEST_F(VlpPlan, ReportsReuse)
 {
   const std::string map = folder.write("map.yaml", R"(lamps:
@@ -155,6 +209,9 @@ TEST_F(VlpPlan, WhatTheRigCannotHoldIsSaid)
   const std::string out = folder / "out";
   expectOneLine(with({"--lamps", "5000", "--out", out}), nothingFound,
                 {"--lamps: 5000, expected at most the "});
+  expectOneLine({"--rig", rig, "--place", hall, "--words", "--bits", "8", "--heights", "1.2", "--reuse", "20",
+                 "--out", out},
+                nothingFound, {"--reuse: 20, expected at most the "});
   expectOneLine({"--rig", rig, "--heights", "30", "--diameter", "0.175", "--out", out}, nothingFound,
                 {"no frequency is left"});
   expectOneLine(with({"--words", "--chip-rate", "1000", "--out", out}), nothingFound,
@@ -188,6 +245,17 @@ TEST_F(VlpPlan, BadUsageIsOneClearLine)
   expectOneLine(with({"--words", "--header", "01x"}), badInput, {"header: \"01x\", expected"});
   expectOneLine(with({"--check", hall, "--out", out}), badInput, {"--check: with --out"});
   expectOneLine(with({"--place", hall, "--lamps", "3"}), badInput, {"--lamps: with --place"});
+  expectOneLine(with({"--reuse", "3", "--out", out}), badInput, {"--reuse: without --place"});
+  expectOneLine(with({"--place", hall, "--reuse", "1"}), badInput, {"--reuse: 1, expected 2 or more"});
+  expectOneLine(with({"--place", hall, "--reuse", "31", "--out", out}), badInput,
+                {"--reuse: 31, expected at most the 30 lamps of ", "hall.yaml"});
+  expectOneLine(with({"--place", hall, "--view-radius", "3"}), badInput, {"--view-radius: without --reuse"});
+  for (const std::string radius : {"0", "-1", "inf", "wide"}) {
+    expectOneLine(with({"--place", hall, "--reuse", "9", "--view-radius=" + radius}), badInput,
+                  {"--view-radius: " + radius + ", expected a number of metres above 0"});
+  }
+  expectOneLine({"--rig", rig, "--check", hall, "--reuse", "3"}, badInput,
+                {"--check: with --out", "--reuse"});
   expectOneLine(with({"--place", hall, "--out", hall}), badInput, {"--out: ", "which is an input"});
 }
 
