@@ -35,7 +35,7 @@ struct Seen {
 //! The option that says how many identifiers are wanted.
 const char *countOption(const vpPlanOptions &options)
 {
-  return options.reuse > 0 ? "--reuse" : (countOption(options));
+  return options.reuse > 0 ? "--reuse" : (options.place.empty() ? "--lamps" : "--place");
 }
 
 Seen seenBy(const vpVlpRig &rig, const vpLedIdPlanner &planner, const vpPlanOptions &options)

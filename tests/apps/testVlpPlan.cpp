@@ -25,6 +25,17 @@ constexpr int done = 0, badInput = 2, nothingFound = 3;
 const std::string rig = std::string(VLP_DATA_DIR) + "/rigs/ub300-800x600.yaml";
 const std::string hall = std::string(VLP_DATA_DIR) + "/lamps/hall.yaml";
 
+//! The row of that name in a table.
+std::string valueIn(const std::string &table, const std::string &name)
+{
+  const size_t row = table.find("\n  " + name + "  ");
+  if (row == std::string::npos) {
+    return "no row " + name;
+  }
+  const size_t begin = table.find_first_not_of(' ', row + name.size() + 3);
+  return table.substr(begin, table.find('\n', begin) - begin);
+}
+
 class VlpPlan : public testing::Test
 {
 protected:
@@ -156,18 +167,18 @@ TEST_F(VlpPlan, LaysFewIdentifiersOverManyLamps)
   EXPECT_EQ(map.lamps[9].id, "L9");
   EXPECT_EQ(map.lamps[9].position, Eigen::Vector3d(1.5, 1.5, 3));
   EXPECT_EQ(map.identifiers().size(), 16u);
-  // 800 x 600 pixels of 1 / 488.28 at 2.81 m: half a diagonal of 2.87 m.
-  const std::vector<std::string> rows = {"lamps                                                   64",
-                                         "identifiers                        "
-                                         "                     16",
-                                         "radius of a view, m                                     2.87",
-                                         "least distance between two lamps of one identifier, m  "};
-  for (const std::string &row : rows) {
-    EXPECT_NE(plan.out().find(row), std::string::npos) << plan.out() << "expected: " << row;
-  }
+  EXPECT_EQ(valueIn(plan.out(), "lamps"), "64");
+  EXPECT_EQ(valueIn(plan.out(), "identifiers"), "16");
+  EXPECT_EQ(valueIn(plan.out(), "radius of a view, m"),
+            "2.87"); // 2.81 m above: hypot(400, 300) / 488.28 of it
   const vpLedIdReuse nearest = vpLedIdPlanner::reuse(map).front();
-  const std::string two = "(" + map.lamps[nearest.first].id + ", " + map.lamps[nearest.second].id + ")";
-  EXPECT_NE(plan.out().find(two), std::string::npos) << plan.out() << "expected: " << two;
+  const std::string apart = valueIn(plan.out(), "least distance between two lamps of one identifier, m");
+  EXPECT_NEAR(std::stod(apart), nearest.apart, 0.01);
+  EXPECT_NE(apart.find("(" + map.lamps[nearest.first].id + ", " + map.lamps[nearest.second].id + ")"),
+            std::string::npos)
+      << apart;
+  EXPECT_LT(std::stoi(valueIn(plan.out(), "of these, with one identifier")), 20);
+  EXPECT_LT(std::stoi(valueIn(plan.out(), "of these, repeated: they look like another one")), 200);
 
   vpProcess again("vlp-plan", arguments);
   EXPECT_EQ(again.wait(), done) << again.err();
@@ -187,8 +198,7 @@ TEST_F(VlpPlan, ReusesWordsInAViewOfItsOwn)
   ASSERT_EQ(map.lamps.size(), 30u);
   EXPECT_EQ(map.identifiers().size(), 12u);
   EXPECT_EQ(map.lamps[0].modulation.bits.rfind("011110", 0), 0u);
-  EXPECT_NE(plan.out().find("radius of a view, m                                     4.5"), std::string::npos)
-      << plan.out();
+  EXPECT_EQ(valueIn(plan.out(), "radius of a view, m"), "4.5");
 }
 
 TEST_F(VlpPlan, ReportsReuse)

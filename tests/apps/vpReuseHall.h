@@ -12,7 +12,6 @@
 */
 
 #include <cmath>
-#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -87,17 +86,23 @@ public:
     return {vpTranslationVector(x, y, 0), vpRotationMatrix(vpRzyxVector(yaw, 0, 0))};
   }
 
-  //! Where the picture from there shows a place; nothing where it does not show a lamp there whole.
-  std::optional<Eigen::Vector2d> pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &wMb) const
+  //! Where the camera of a base there has a place, px; in the picture or beside it.
+  Eigen::Vector2d pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &wMb) const
   {
     const vpColVector c =
         (wMb * rig.bMc).inverse() * vpColVector(std::vector<double>{place.x(), place.y(), place.z(), 1});
     Eigen::Vector2d pixel;
     vpMeterPixelConversion::convertPoint(rig.camera, c[0] / c[2], c[1] / c[2], pixel.x(), pixel.y());
-    const double margin = 0.5 * diameter * rig.camera.get_px() / c[2] + 4;
-    const bool whole = pixel.x() > margin && pixel.x() < rig.width - margin && pixel.y() > margin &&
-                       pixel.y() < rig.height - margin;
-    return whole ? std::make_optional(pixel) : std::nullopt;
+    return pixel;
+  }
+
+  //! Whether the picture from there shows the whole of a lamp in that place.
+  bool shows(const Eigen::Vector3d &place, const vpHomogeneousMatrix &wMb) const
+  {
+    const Eigen::Vector2d pixel = pixelOf(place, wMb);
+    const double margin = 0.5 * diameter * rig.camera.get_px() / (height - rig.bMc[2][3]) + 4;
+    return pixel.x() > margin && pixel.x() < rig.width - margin && pixel.y() > margin &&
+           pixel.y() < rig.height - margin;
   }
 
   //! Lamps of the map that the picture from there shows whole.
@@ -105,7 +110,7 @@ public:
   {
     size_t count = 0;
     for (const vpLamp &lamp : map.lamps) {
-      count += pixelOf(lamp.position, wMb).has_value();
+      count += shows(lamp.position, wMb);
     }
     return count;
   }
