@@ -217,6 +217,9 @@ vpExitCode vpPlan(const vpPlanOptions &options)
     file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.commit();
   }
+  if (!options.out.empty()) {
+    const vpAtomicFile probe(options.out); // gone again: only tells whether it can be written
+  }
   std::optional<vpReportTable> laid;
   const vpLampPlaces places = filled(rig, options, seen, choice, laid);
   if (!options.out.empty()) {

@@ -50,7 +50,7 @@ void expectNames(const vpReuseHall &hall, const vpVlpLocation &location, const v
   std::set<std::string> accepted;
   for (const vpLampObservation &lamp : location.observations) {
     if (!lamp.id.empty()) {
-      const double reach = lamp.accepted ? near : 0.5 * lamp.outline.diameter(); // the border may cut it
+      const double reach = near + 3 * std::sqrt(lamp.covariance.trace()); // px, where the border cuts it
       EXPECT_EQ(lamp.id, lampAt(hall, lamp.point, wMb, reach)) << lamp.remark;
     }
     if (lamp.accepted) {

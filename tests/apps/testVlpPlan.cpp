@@ -269,6 +269,21 @@ TEST_F(VlpPlan, BadUsageIsOneClearLine)
   expectOneLine(with({"--place", hall, "--out", hall}), badInput, {"--out: ", "which is an input"});
 }
 
+TEST_F(VlpPlan, ViewThatHasNoEndIsSaid)
+{
+  const std::string aslant = folder.write(
+      "rig.yaml", "camera: {file: " + std::string(VLP_DATA_DIR) +
+                      "/rigs/ub300-800x600.xml, name: UB300}\n"
+                      "shutter: {row_time_s: 43.1e-6, row_time_sigma_s: 2e-9, exposure_s: 43.1e-6, readout: "
+                      "rows}\nmount: {translation_m: [0, 0, 0.19], rotation_rpy_deg: [0, 60, 0]}\n");
+  const std::vector<std::string> arguments = {"--rig", aslant, "--place", hall, "--reuse", "12"};
+  expectOneLine(arguments, badInput, {"--view-radius: nothing, expected", "shows the horizon"});
+  std::vector<std::string> given = arguments;
+  given.insert(given.end(), {"--view-radius", "4"});
+  vpProcess plan("vlp-plan", given);
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+}
+
 TEST_F(VlpPlan, BadFilesAreOneClearLine)
 {
   const std::string none = folder / "none.yaml";

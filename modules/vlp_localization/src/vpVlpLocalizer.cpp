@@ -40,8 +40,8 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
   }
 
   // Section 2.1.3: the pose from the rays to these lamps, two of them or all that agree with each other.
-  const vpLampConsensus consensus(lampsOf(location.observations), m_rig, location.observations,
-                                  mapTolerance, outlierLikelihood);
+  const vpLampConsensus consensus(lampsOf(location.observations), m_rig, location.observations, mapTolerance,
+                                  outlierLikelihood);
   location.fix = consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
     return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
   });
