@@ -161,26 +161,32 @@ Choice chooseWords(const vpLedIdPlanner &planner, const vpPlanOptions &options, 
   return choice;
 }
 
-//! The lamps with what was chosen. Where they share it, \e laid says how well.
-vpLampPlaces filled(const vpVlpRig &rig, const vpPlanOptions &options, const Seen &seen, const Choice &choice,
-                    std::optional<vpReportTable> &laid)
+//! The lamps with what was chosen.
+struct Filled {
+  vpLampPlaces places;
+  std::optional<vpReportTable> laid; // where lamps share identifiers: how well
+};
+
+Filled fill(const vpVlpRig &rig, const vpPlanOptions &options, const Seen &seen, const Choice &choice)
 {
-  vpLampPlaces places = seen.places ? *seen.places
-                                    : vpLampPlaces::grid(choice.signals.size(), options.diameter,
-                                                         rig.bMc[2][3] + options.highest);
-  for (vpLamp &lamp : places.map.lamps) {
+  Filled filled;
+  filled.places = seen.places ? *seen.places
+                              : vpLampPlaces::grid(choice.signals.size(), options.diameter,
+                                                   rig.bMc[2][3] + options.highest);
+  std::vector<vpLamp> &lamps = filled.places.map.lamps;
+  for (vpLamp &lamp : lamps) {
     lamp.oscillatorPpm = options.oscillatorPpm;
   }
   if (options.reuse > 0) {
     const bool given = !std::isnan(options.viewRadius);
-    laid =
-        vpLayOver(places.map, choice.signals, given ? options.viewRadius : vpViewRadius(rig, seen.highest));
-    return places;
+    const double radius = given ? options.viewRadius : vpViewRadius(rig, seen.highest);
+    filled.laid = vpLayOver(filled.places.map, choice.signals, radius);
+    return filled;
   }
-  for (size_t i = 0; i < places.map.lamps.size(); ++i) {
-    places.map.lamps[i].modulation = choice.signals[i];
+  for (size_t i = 0; i < lamps.size(); ++i) {
+    lamps[i].modulation = choice.signals[i];
   }
-  return places;
+  return filled;
 }
 
 void print(const Seen &seen, vpReportTable table)
@@ -220,14 +226,13 @@ vpExitCode vpPlan(const vpPlanOptions &options)
   if (!options.out.empty()) {
     const vpAtomicFile probe(options.out); // gone again: only tells whether it can be written
   }
-  std::optional<vpReportTable> laid;
-  const vpLampPlaces places = filled(rig, options, seen, choice, laid);
+  const Filled filled = fill(rig, options, seen, choice);
   if (!options.out.empty()) {
-    places.map.save(options.out, places.comment);
+    filled.places.map.save(options.out, filled.places.comment);
   }
   print(seen, choice.table);
-  if (laid) {
-    std::cout << "\n" << laid->text();
+  if (filled.laid) {
+    std::cout << "\n" << filled.laid->text();
   }
   return vpExitCode::done;
 }

@@ -39,6 +39,7 @@ double headingOf(const vpHomogeneousMatrix &wMb)
 void expectPose(const vpVlpFix &fix, const vpHomogeneousMatrix &wMb)
 {
   ASSERT_TRUE(fix.valid) << fix.refusal;
+  EXPECT_FALSE(fix.ambiguous);
   EXPECT_NEAR(fix.wMb[0][3], wMb[0][3], 0.005);
   EXPECT_NEAR(fix.wMb[1][3], wMb[1][3], 0.005);
   EXPECT_NEAR(std::remainder(headingOf(fix.wMb) - headingOf(wMb), 2 * M_PI), 0, 0.003);
