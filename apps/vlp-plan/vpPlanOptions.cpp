@@ -30,7 +30,7 @@ Examples:
     vlp-plan --rig rig.yaml --heights 1.2:2.5 --diameter 0.175 --lamps 50 --out lamps.yaml
   the same for lamps whose places are known, with cheap RC clocks and a low error
     vlp-plan --rig rig.yaml --place surveyed.yaml --oscillator rc --error 1e-5 --out lamps.yaml
-  a hall of many lamps with 20 identifiers, laid so that any view still says where the robot is
+  a hall of many lamps with 20 identifiers, laid so that three lamps in view say where the robot is
     vlp-plan --rig rig.yaml --place surveyed.csv --diameter 0.175 --reuse 20 --out lamps.yaml
   words of 14 bits instead of one frequency each
     vlp-plan --rig rig.yaml --heights 1.2:1.5 --diameter 0.175 --words --chip-rate 8000 --out lamps.yaml
@@ -41,8 +41,9 @@ Heights are those of the lamps above the camera, not above the floor: a lamp tha
 in the picture, so the farthest decides. A place is a lamp map (positions, ids, sizes are kept, all lamps get an
 identifier) or a CSV with the header id,x_m,y_m,z_m. Without one, lamps hang on a grid that says it is a placeholder.
 Reuse: vpIdentifierLayout gives the lamps of one view different identifiers, and sets of three that look like no
-other set. A view is what the whole picture shows of the ceiling at the greatest height (--heights, or the highest
-lamp of the place): its radius is that of the smallest circle around the rays through the picture's corners.
+other set, as far as so few identifiers suffice: its table says what is left. A view is what the whole picture
+shows of the ceiling at the greatest height (--heights, or the highest lamp of the place): its radius is that of
+the smallest circle around the rays through the picture's corners.
 A distance is in standard deviations of what is measured, half of it each way; 6.6 are an error of 1 in 1000.
 SNR: 20 log10 of half the swing of a lamp's stripes over the noise of one line's mean, without any blur.
 vpLedIdPlanner and vpStripePrediction explain the formulas; tutorial/plan goes through an example.
