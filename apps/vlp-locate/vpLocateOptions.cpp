@@ -39,9 +39,10 @@ Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
            a row for each frame read. Angles about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).
            lamps: their ids, joined by ';'. state: fix; ambiguous (a second pose explains the frame as
            well, this one is the likelier); none (no position, the fields of the pose are empty).
-  seen     timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted:
+  seen     timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted,symbols:
            a row for each lamp-like region. u, v: the image of the lamp's middle. lamp_id is empty where
-           it is no lamp of the map; accepted is 1 where it counts for the position.
+           it is no lamp of the map; accepted is 1 where it counts for the position. symbols: the chips of
+           a lamp that sends a word, 1 lit, from the rotation that is the greatest as text; else empty.
   overlay  a picture for each frame: outlines green where the lamp counts for the position, yellow where it
            is known and does not, orange where it is no lamp of the map; the pose in a corner.
 Pictures without times (--images, --image) get their index, 0 1 2 ..., as their time.

@@ -26,7 +26,7 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr const char *seenHeader =
-    "timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted";
+    "timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted,symbols";
 
 std::unique_ptr<vpAtomicFile> open(const std::string &name, const std::string &header)
 {
@@ -162,7 +162,7 @@ void vpLocateOutputs::writeSeen(const vpLocatedFrame &located)
     m_seen->stream() << listed({vpNumberText(located.location.timestamp), located.frame.name, lamp.id,
                                 field(lamp.point.x()), field(lamp.point.y()), field(lamp.outline.diameter()),
                                 field(lamp.features.frequency), field(lamp.features.duty),
-                                field(lamp.confidence), lamp.accepted ? "1" : "0"})
+                                field(lamp.confidence), lamp.accepted ? "1" : "0", lamp.features.chips})
                      << "\n";
   }
 }

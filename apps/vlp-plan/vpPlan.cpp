@@ -17,6 +17,7 @@
 #include "common/vpInterrupt.h"
 #include "vpLampPlaces.h"
 #include "vpPlanPicture.h"
+#include "vpPlanReuse.h"
 #include "vpPlanText.h"
 
 BEGIN_VISP_NAMESPACE
@@ -28,7 +29,14 @@ struct Seen {
   std::vector<double> lines;          // of the smallest and the largest lamp
   std::optional<vpLampPlaces> places; // where they hang, if that was said
   size_t wanted = 0;                  // identifiers; 0: all there are
+  double highest = 0;                 // m above the camera
 };
+
+//! The option that says how many identifiers are wanted.
+const char *countOption(const vpPlanOptions &options)
+{
+  return options.reuse > 0 ? "--reuse" : (options.place.empty() ? "--lamps" : "--place");
+}
 
 Seen seenBy(const vpVlpRig &rig, const vpLedIdPlanner &planner, const vpPlanOptions &options)
 {
@@ -37,10 +45,17 @@ Seen seenBy(const vpVlpRig &rig, const vpLedIdPlanner &planner, const vpPlanOpti
     seen.lines = {planner.prediction.lines(options.diameter, options.highest),
                   planner.prediction.lines(options.diameter, options.lowest)};
     seen.wanted = options.lamps;
+    seen.highest = options.highest;
     return seen;
   }
   seen.places = vpLampPlaces::load(options.place, options.diameter);
-  seen.wanted = seen.places->map.lamps.size();
+  const size_t lamps = seen.places->map.lamps.size();
+  if (options.reuse > lamps) {
+    throw vpException(vpException::badValue, "--reuse: " + std::to_string(options.reuse) +
+                                                 ", expected at most the " + std::to_string(lamps) +
+                                                 " lamps of " + options.place);
+  }
+  seen.wanted = options.reuse > 0 ? options.reuse : lamps;
   seen.lines = {planner.prediction.pictureLines(), 0};
   for (const vpLamp &lamp : seen.places->map.lamps) {
     const double own = lamp.position.z() - rig.bMc[2][3];
@@ -51,6 +66,7 @@ Seen seenBy(const vpVlpRig &rig, const vpLedIdPlanner &planner, const vpPlanOpti
                                                    vpNumberText(own) +
                                                    " m above the camera, expected more than 0");
     }
+    seen.highest = std::max(seen.highest, high);
     seen.lines[0] = std::min(seen.lines[0], planner.prediction.lines(lamp.size, high));
     seen.lines[1] = std::max(seen.lines[1], planner.prediction.lines(lamp.size, low));
   }
@@ -90,7 +106,7 @@ Choice chooseFrequencies(const vpLedIdPlanner &planner, const vpPlanOptions &opt
                      vpFigureText(planner.highest()) + " Hz";
     return choice;
   }
-  refuseTooMany(choice, seen.wanted, options.place.empty() ? "--lamps" : "--place");
+  refuseTooMany(choice, seen.wanted, countOption(options));
   if (seen.wanted > 0 && choice.refusal.empty()) {
     plan = planner.spread(lines, ppm, seen.wanted);
   }
@@ -130,7 +146,7 @@ Choice chooseWords(const vpLedIdPlanner &planner, const vpPlanOptions &options, 
     choice.refusal = "words are wrong with a probability of " + vpFigureText(plan.error) +
                      ", expected at most " + vpFigureText(options.error) + " (--error, --chips-apart)";
   }
-  refuseTooMany(choice, seen.wanted, options.place.empty() ? "--lamps" : "--place");
+  refuseTooMany(choice, seen.wanted, countOption(options));
   choice.signals = plan.words;
   if (seen.wanted > 0 && choice.refusal.empty()) {
     choice.signals.resize(seen.wanted);
@@ -145,16 +161,32 @@ Choice chooseWords(const vpLedIdPlanner &planner, const vpPlanOptions &options, 
   return choice;
 }
 
-vpLampPlaces filled(const vpVlpRig &rig, const vpPlanOptions &options, const Seen &seen, const Choice &choice)
+//! The lamps with what was chosen.
+struct Filled {
+  vpLampPlaces places;
+  std::optional<vpReportTable> laid; // where lamps share identifiers: how well
+};
+
+Filled fill(const vpVlpRig &rig, const vpPlanOptions &options, const Seen &seen, const Choice &choice)
 {
-  vpLampPlaces places = seen.places ? *seen.places
-                                    : vpLampPlaces::grid(choice.signals.size(), options.diameter,
-                                                         rig.bMc[2][3] + options.highest);
-  for (size_t i = 0; i < places.map.lamps.size(); ++i) {
-    places.map.lamps[i].modulation = choice.signals[i];
-    places.map.lamps[i].oscillatorPpm = options.oscillatorPpm;
+  Filled filled;
+  filled.places = seen.places ? *seen.places
+                              : vpLampPlaces::grid(choice.signals.size(), options.diameter,
+                                                   rig.bMc[2][3] + options.highest);
+  std::vector<vpLamp> &lamps = filled.places.map.lamps;
+  for (vpLamp &lamp : lamps) {
+    lamp.oscillatorPpm = options.oscillatorPpm;
   }
-  return places;
+  if (options.reuse > 0) {
+    const bool given = !std::isnan(options.viewRadius);
+    const double radius = given ? options.viewRadius : vpViewRadius(rig, seen.highest);
+    filled.laid = vpLayOver(filled.places.map, choice.signals, radius);
+    return filled;
+  }
+  for (size_t i = 0; i < lamps.size(); ++i) {
+    lamps[i].modulation = choice.signals[i];
+  }
+  return filled;
 }
 
 void print(const Seen &seen, vpReportTable table)
@@ -192,10 +224,16 @@ vpExitCode vpPlan(const vpPlanOptions &options)
     file.commit();
   }
   if (!options.out.empty()) {
-    const vpLampPlaces places = filled(rig, options, seen, choice);
-    places.map.save(options.out, places.comment);
+    const vpAtomicFile probe(options.out); // gone again: only tells whether it can be written
+  }
+  const Filled filled = fill(rig, options, seen, choice);
+  if (!options.out.empty()) {
+    filled.places.map.save(options.out, filled.places.comment);
   }
   print(seen, choice.table);
+  if (filled.laid) {
+    std::cout << "\n" << filled.laid->text();
+  }
   return vpExitCode::done;
 }
 

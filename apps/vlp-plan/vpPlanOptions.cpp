@@ -30,6 +30,8 @@ Examples:
     vlp-plan --rig rig.yaml --heights 1.2:2.5 --diameter 0.175 --lamps 50 --out lamps.yaml
   the same for lamps whose places are known, with cheap RC clocks and a low error
     vlp-plan --rig rig.yaml --place surveyed.yaml --oscillator rc --error 1e-5 --out lamps.yaml
+  a hall of many lamps with 20 identifiers, laid so that three lamps in view say where the robot is
+    vlp-plan --rig rig.yaml --place surveyed.csv --diameter 0.175 --reuse 20 --out lamps.yaml
   words of 14 bits instead of one frequency each
     vlp-plan --rig rig.yaml --heights 1.2:1.5 --diameter 0.175 --words --chip-rate 8000 --out lamps.yaml
   which lamps of a map are the easiest to confuse?
@@ -38,6 +40,10 @@ Examples:
 Heights are those of the lamps above the camera, not above the floor: a lamp that is farther away has fewer lines
 in the picture, so the farthest decides. A place is a lamp map (positions, ids, sizes are kept, all lamps get an
 identifier) or a CSV with the header id,x_m,y_m,z_m. Without one, lamps hang on a grid that says it is a placeholder.
+Reuse: vpIdentifierLayout gives the lamps of one view different identifiers, and sets of three that look like no
+other set, as far as so few identifiers suffice: its table says what is left. A view is what the whole picture
+shows of the ceiling at the greatest height (--heights, or the highest lamp of the place): its radius is that of
+the smallest circle around the rays through the picture's corners.
 A distance is in standard deviations of what is measured, half of it each way; 6.6 are an error of 1 in 1000.
 SNR: 20 log10 of half the swing of a lamp's stripes over the noise of one line's mean, without any blur.
 vpLedIdPlanner and vpStripePrediction explain the formulas; tutorial/plan goes through an example.
@@ -128,7 +134,7 @@ bool vpPlanOptions::parse(int argc, char **argv)
   CLI::App app(description, "vlp-plan");
   app.footer(footer);
   app.get_formatter()->column_width(28);
-  std::string heights, size, oscillator = "crystal", wrong, snr, dutyList, frequencies, chipRate,
+  std::string heights, size, oscillator = "crystal", wrong, snr, dutyList, frequencies, chipRate, view,
                              code = "manchester";
   size_t bits = format.bits, apart = format.minDistance;
   vpAddName(app, "--rig", rig, "FILE", "the camera on the robot");
@@ -145,6 +151,10 @@ bool vpPlanOptions::parse(int argc, char **argv)
   vpAddName(app, "--frequencies", frequencies, "FROM:TO",
             "Hz; default: from 3 stripes or 500 Hz to where exposure or rate of lines end it");
   vpAddName(app, "--place", place, "FILE", "where the lamps hang: a lamp map, or a CSV of positions");
+  addCount(app, "--reuse", reuse,
+           "identifiers for all lamps of --place, each on many of them; default: each lamp its own");
+  vpAddName(app, "--view-radius", view, "M",
+            "of what a picture shows of the ceiling, for --reuse; default: as the rig and the heights say");
   vpAddName(app, "--out", out, "FILE", "write the lamp map");
   vpAddName(app, "--picture", picture, "FILE.png",
             "draw how many identifiers there are for lamps of any size");
@@ -173,6 +183,7 @@ bool vpPlanOptions::parse(int argc, char **argv)
   readNumber("--diameter", size, 0, INFINITY, "a number of metres above 0", diameter);
   readNumber("--error", wrong, 0, 0.5, "a probability above 0 and below 0.5", error);
   readNumber("--snr-db", snr, -100, 200, "a number of dB, as 20", snrDb);
+  readNumber("--view-radius", view, 0, INFINITY, "a number of metres above 0", viewRadius);
   readNumber("--chip-rate", chipRate, 0, INFINITY, "a number of Hz above 0", format.chipRate);
   oscillatorPpm = oscillatorOf(oscillator);
   duties = dutyList.empty() ? duties : dutiesOf(dutyList);
@@ -192,9 +203,9 @@ void vpPlanOptions::checkTogether(bool ook) const
     fail("--code: ook without --words, expected only with it");
   }
   if (!check.empty()) {
-    if (!out.empty() || !picture.empty() || !place.empty() || lamps > 0 || words) {
-      fail("--check: with --out, --picture, --place, --lamps or --words, expected none of these: it plans "
-           "nothing");
+    if (!out.empty() || !picture.empty() || !place.empty() || lamps > 0 || reuse > 0 || words) {
+      fail("--check: with --out, --picture, --place, --lamps, --reuse or --words, expected none of these: it "
+           "plans nothing");
     }
     return;
   }
@@ -206,6 +217,15 @@ void vpPlanOptions::checkTogether(bool ook) const
   }
   if (!place.empty() && lamps > 0) {
     fail("--lamps: with --place, expected one of them: a place says how many lamps there are");
+  }
+  if (reuse > 0 && place.empty()) {
+    fail("--reuse: without --place, expected only with it: where lamps hang decides which are told apart");
+  }
+  if (reuse == 1) {
+    fail("--reuse: 1, expected 2 or more");
+  }
+  if (reuse == 0 && !std::isnan(viewRadius)) {
+    fail("--view-radius: without --reuse, expected only with it");
   }
   if (!picture.empty() && std::filesystem::path(picture).extension() != ".png") {
     fail("--picture: " + vpShown(picture) + ", expected a name that ends in .png");

@@ -23,7 +23,9 @@ struct vpPlanOptions {
   double lowest = std::nan(""), highest = std::nan(""); // m, of the lamps above the camera; NaN: not given
   double diameter = std::nan("");                       // m; NaN: not given
   double oscillatorPpm = 50;
-  size_t lamps = 0; // 0: as many as there is room for
+  size_t lamps = 0;                 // 0: as many as there is room for
+  size_t reuse = 0;                 // identifiers for all lamps of the place; 0: each its own
+  double viewRadius = std::nan(""); // m, of what one picture shows of the ceiling; NaN: as the rig says
   double error = 1e-3;
   double snrDb = 20;
   std::vector<double> duties = {0.2, 0.5, 0.8};

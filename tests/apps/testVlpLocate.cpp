@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 #include <visp3/vlp_core/vpCsvTable.h>
+#include <visp3/vlp_core/vpModulation.h>
 
 #include "apps/vpLocateScene.h"
 #include "common/vpProcess.h"
@@ -28,7 +29,7 @@ const std::vector<std::string> fixColumns = {"timestamp_s", "x",      "y",      
                                              "sigma_yaw",   "cov_xy", "lamps",   "state",   "compute_s"};
 const std::vector<std::string> seenColumns = {"timestamp_s", "file",        "lamp_id",      "u",
                                               "v",           "diameter_px", "frequency_hz", "duty",
-                                              "confidence",  "accepted"};
+                                              "confidence",  "accepted",    "symbols"};
 
 //! Rows of a TUM trajectory as numbers, without its comments.
 std::vector<std::vector<double>> tum(const std::string &text)
@@ -178,7 +179,44 @@ TEST(VlpLocate, FixesAndSeenHoldTheirColumns)
     EXPECT_NEAR(seen.number(row, 7), 0.5, 0.1);
     EXPECT_GT(seen.number(row, 8), 0.9);
     EXPECT_EQ(seen.text(row, 9), "1");
+    EXPECT_EQ(seen.text(row, 10), ""); // no lamp of the scene sends a word
   }
+}
+
+TEST(VlpLocate, SymbolsAreTheChipsOfALampThatSendsAWord)
+{
+  const vpTemporaryFolder folder;
+  const auto rig = vpLocateScene::writeRig(folder);
+  const std::string bits = "0111101100"; // of which Manchester makes 20 chips
+  vpModulation word;
+  word.kind = vpModulation::Kind::word;
+  word.bits = bits;
+  const std::string chips = word.chips();
+  std::string greatest;
+  for (size_t turn = 0; turn < chips.size(); ++turn) {
+    greatest = std::max(greatest, chips.substr(turn) + chips.substr(0, turn));
+  }
+  folder.write("lamps.yaml", "lamps:\n  - {id: W, position_m: [0, 0, 1.6], diameter_m: 0.3, word: {bits: \"" +
+                                 bits + "\", chip_rate_hz: 8000, code: manchester}}\n");
+  vpLampPicture scene;
+  scene.blur = 0.7;
+  scene.background = 4;
+  scene.noise = 1;
+  vpPaintedLamp lamp;
+  lamp.centre = {vpLocateScene::u0, vpLocateScene::v0};
+  lamp.a = lamp.b = 60;
+  lamp.frequency = 8000. / static_cast<double>(chips.size());
+  lamp.chips(chips);
+  scene.lamps.push_back(lamp);
+  const vpImage<unsigned char> I = scene.render();
+  const std::string file =
+      folder.write("a.png", encoded(".png", cv::Mat(scene.height, scene.width, CV_8UC1, I.bitmap)));
+  vpProcess locate("vlp-locate", with(rig, {"--image", file, "--seen", folder / "seen.csv"}));
+  EXPECT_EQ(locate.wait(), 3) << locate.err(); // one lamp is no position
+  const vpCsvTable seen = vpCsvTable::load(folder / "seen.csv", seenColumns);
+  ASSERT_EQ(seen.rows(), 1u);
+  EXPECT_EQ(seen.text(0, 2), "W");
+  EXPECT_EQ(seen.text(0, 10), greatest);
 }
 
 TEST(VlpLocate, LampThatTheMapDoesNotKnowIsSeenAndDoesNotCount)

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_detection/vpLedIdPlanner.h>
 
 #include "common/vpProcess.h"
 
@@ -23,6 +24,17 @@ constexpr int done = 0, badInput = 2, nothingFound = 3;
 
 const std::string rig = std::string(VLP_DATA_DIR) + "/rigs/ub300-800x600.yaml";
 const std::string hall = std::string(VLP_DATA_DIR) + "/lamps/hall.yaml";
+
+//! The row of that name in a table.
+std::string valueIn(const std::string &table, const std::string &name)
+{
+  const size_t row = table.find("\n  " + name + "  ");
+  if (row == std::string::npos) {
+    return "no row " + name;
+  }
+  const size_t begin = table.find_first_not_of(' ', row + name.size() + 3);
+  return table.substr(begin, table.find('\n', begin) - begin);
+}
 
 class VlpPlan : public testing::Test
 {
@@ -60,8 +72,9 @@ TEST_F(VlpPlan, HelpHasExamplesAndExitCodes)
 {
   vpProcess help("vlp-plan", {"--help"});
   EXPECT_EQ(help.wait(), done);
-  for (const char *part : {"Examples:", "--heights FROM:TO", "above the camera, not above the floor",
-                           "--check FILE", "Exit code: 0 done; 2 bad usage"}) {
+  for (const char *part :
+       {"Examples:", "--heights FROM:TO", "above the camera, not above the floor", "--check FILE",
+        "--reuse N", "smallest circle around the rays", "Exit code: 0 done; 2 bad usage"}) {
     EXPECT_NE(help.out().find(part), std::string::npos) << part;
   }
 }
@@ -137,6 +150,57 @@ TEST_F(VlpPlan, DrawsThePicture)
   EXPECT_EQ(folder.count(), 1u);
 }
 
+TEST_F(VlpPlan, LaysFewIdentifiersOverManyLamps)
+{
+  std::string places = "id,x_m,y_m,z_m\n"; // a grid of 1.5 m
+  for (int k = 0; k < 64; ++k) {
+    places += "L" + std::to_string(k) + "," + std::to_string(1.5 * (k % 8)) + "," +
+              std::to_string(1.5 * (k / 8)) + ",3\n";
+  }
+  const std::string csv = folder.write("places.csv", places);
+  const std::vector<std::string> arguments = {"--rig", rig,       "--place", csv,     "--diameter",
+                                              "0.3",   "--reuse", "16",      "--out", folder / "out"};
+  vpProcess plan("vlp-plan", arguments);
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+  const vpLampMap map = vpLampMap::load(folder / "out");
+  ASSERT_EQ(map.lamps.size(), 64u);
+  EXPECT_EQ(map.lamps[9].id, "L9");
+  EXPECT_EQ(map.lamps[9].position, Eigen::Vector3d(1.5, 1.5, 3));
+  EXPECT_EQ(map.identifiers().size(), 16u);
+  EXPECT_EQ(valueIn(plan.out(), "lamps"), "64");
+  EXPECT_EQ(valueIn(plan.out(), "identifiers"), "16");
+  EXPECT_EQ(valueIn(plan.out(), "radius of a view, m"),
+            "2.87"); // 2.81 m above: hypot(400, 300) / 488.28 of it
+  const vpLedIdReuse nearest = vpLedIdPlanner::reuse(map).front();
+  const std::string apart = valueIn(plan.out(), "least distance between two lamps of one identifier, m");
+  EXPECT_NEAR(std::stod(apart), nearest.apart, 0.01);
+  EXPECT_NE(apart.find("(" + map.lamps[nearest.first].id + ", " + map.lamps[nearest.second].id + ")"),
+            std::string::npos)
+      << apart;
+  EXPECT_LT(std::stoi(valueIn(plan.out(), "of these, with one identifier")), 20);
+  EXPECT_LT(std::stoi(valueIn(plan.out(), "of these, repeated: they look like another one")), 200);
+
+  vpProcess again("vlp-plan", arguments);
+  EXPECT_EQ(again.wait(), done) << again.err();
+  EXPECT_EQ(again.out(), plan.out());
+
+  vpProcess check("vlp-plan", {"--rig", rig, "--check", folder / "out"});
+  EXPECT_EQ(check.wait(), done) << check.err();
+  EXPECT_NE(check.out().find("Identifiers that lamps share (16)"), std::string::npos) << check.out();
+}
+
+TEST_F(VlpPlan, ReusesWordsInAViewOfItsOwn)
+{
+  vpProcess plan("vlp-plan", {"--rig", rig, "--place", hall, "--heights", "1.2:1.5", "--words", "--reuse",
+                              "12", "--view-radius", "4.5", "--out", folder / "out"});
+  EXPECT_EQ(plan.wait(), done) << plan.err();
+  const vpLampMap map = vpLampMap::load(folder / "out");
+  ASSERT_EQ(map.lamps.size(), 30u);
+  EXPECT_EQ(map.identifiers().size(), 12u);
+  EXPECT_EQ(map.lamps[0].modulation.bits.rfind("011110", 0), 0u);
+  EXPECT_EQ(valueIn(plan.out(), "radius of a view, m"), "4.5");
+}
+
 TEST_F(VlpPlan, ReportsReuse)
 {
   const std::string map = folder.write("map.yaml", R"(lamps:
@@ -155,6 +219,9 @@ TEST_F(VlpPlan, WhatTheRigCannotHoldIsSaid)
   const std::string out = folder / "out";
   expectOneLine(with({"--lamps", "5000", "--out", out}), nothingFound,
                 {"--lamps: 5000, expected at most the "});
+  expectOneLine({"--rig", rig, "--place", hall, "--words", "--bits", "8", "--heights", "1.2", "--reuse", "20",
+                 "--out", out},
+                nothingFound, {"--reuse: 20, expected at most the "});
   expectOneLine({"--rig", rig, "--heights", "30", "--diameter", "0.175", "--out", out}, nothingFound,
                 {"no frequency is left"});
   expectOneLine(with({"--words", "--chip-rate", "1000", "--out", out}), nothingFound,
@@ -188,7 +255,33 @@ TEST_F(VlpPlan, BadUsageIsOneClearLine)
   expectOneLine(with({"--words", "--header", "01x"}), badInput, {"header: \"01x\", expected"});
   expectOneLine(with({"--check", hall, "--out", out}), badInput, {"--check: with --out"});
   expectOneLine(with({"--place", hall, "--lamps", "3"}), badInput, {"--lamps: with --place"});
+  expectOneLine(with({"--reuse", "3", "--out", out}), badInput, {"--reuse: without --place"});
+  expectOneLine(with({"--place", hall, "--reuse", "1"}), badInput, {"--reuse: 1, expected 2 or more"});
+  expectOneLine(with({"--place", hall, "--reuse", "31", "--out", out}), badInput,
+                {"--reuse: 31, expected at most the 30 lamps of ", "hall.yaml"});
+  expectOneLine(with({"--place", hall, "--view-radius", "3"}), badInput, {"--view-radius: without --reuse"});
+  for (const std::string radius : {"0", "-1", "inf", "wide"}) {
+    expectOneLine(with({"--place", hall, "--reuse", "9", "--view-radius=" + radius}), badInput,
+                  {"--view-radius: " + radius + ", expected a number of metres above 0"});
+  }
+  expectOneLine({"--rig", rig, "--check", hall, "--reuse", "3"}, badInput,
+                {"--check: with --out", "--reuse"});
   expectOneLine(with({"--place", hall, "--out", hall}), badInput, {"--out: ", "which is an input"});
+}
+
+TEST_F(VlpPlan, ViewThatHasNoEndIsSaid)
+{
+  const std::string aslant = folder.write(
+      "rig.yaml", "camera: {file: " + std::string(VLP_DATA_DIR) +
+                      "/rigs/ub300-800x600.xml, name: UB300}\n"
+                      "shutter: {row_time_s: 43.1e-6, row_time_sigma_s: 2e-9, exposure_s: 43.1e-6, readout: "
+                      "rows}\nmount: {translation_m: [0, 0, 0.19], rotation_rpy_deg: [0, 60, 0]}\n");
+  const std::vector<std::string> arguments = {"--rig", aslant, "--place", hall, "--reuse", "12"};
+  expectOneLine(arguments, badInput, {"--view-radius: nothing, expected", "shows the horizon"});
+  std::vector<std::string> given = arguments;
+  given.insert(given.end(), {"--view-radius", "4"});
+  vpProcess plan("vlp-plan", given);
+  EXPECT_EQ(plan.wait(), done) << plan.err();
 }
 
 TEST_F(VlpPlan, BadFilesAreOneClearLine)

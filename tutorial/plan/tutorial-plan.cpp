@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 //! \example tutorial-plan.cpp
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_detection/vpLedIdPlanner.h>
 #include <visp3/vlp_evaluation/vpCapacityFigure.h>
+#include <visp3/vlp_localization/vpIdentifierLayout.h>
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
@@ -76,6 +78,16 @@ int main(int argc, char **argv)
     for (size_t i = 0; i < 2; ++i)
       std::printf("%s and %s: distance %.1f, error %.1g\n", map.lamps[pairs[i].first].id.c_str(),
                   map.lamps[pairs[i].second].id.c_str(), pairs[i].distance, pairs[i].error);
+
+    std::vector<Eigen::Vector3d> places; // 64 lamps, a metre apart
+    for (int i = 0; i < 64; ++i)
+      places.emplace_back(i % 8, i / 8, height + rig.bMc[2][3]);
+    vpIdentifierLayout layout;
+    layout.viewRadius =
+        height * std::hypot(0.5 * rig.width / rig.camera.get_px(), 0.5 * rig.height / rig.camera.get_py());
+    const vpIdentifierAssignment laid = layout.lay(places, wanted);
+    std::printf("64 lamps of %zu identifiers: alike %zu of %zu pairs, %zu of %zu sets of three\n", wanted,
+                laid.repeatedPairs, laid.pairsInView, laid.repeatedTriples, laid.triples);
 
     planner.frequencyStep = 2; // Hz, quicker
     draw(planner, lines, argv[5]);

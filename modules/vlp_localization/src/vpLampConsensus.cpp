@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -56,10 +57,10 @@ vpVlpFix refusal(const std::string &reason)
 
 } // namespace
 
-vpLampConsensus::vpLampConsensus(const vpLampMap &map, const vpVlpRig &rig,
+vpLampConsensus::vpLampConsensus(std::vector<const vpLamp *> lamps, const vpVlpRig &rig,
                                  const std::vector<vpLampObservation> &observations, double mapTolerance,
                                  double outlierLikelihood)
-    : m_map(map), m_rig(rig), m_observations(observations), m_tolerance(mapTolerance),
+    : m_lamps(std::move(lamps)), m_rig(rig), m_observations(observations), m_tolerance(mapTolerance),
       m_likelihood(outlierLikelihood)
 {
 }
@@ -88,7 +89,7 @@ std::vector<vpLampSight> vpLampConsensus::sights(const std::vector<size_t> &whic
 {
   std::vector<vpLampSight> lamps;
   for (size_t i : which) {
-    lamps.push_back(vpLampSight::from(*m_map.find(m_observations[i].id), m_observations[i], m_rig.camera));
+    lamps.push_back(vpLampSight::from(*m_lamps[i], m_observations[i], m_rig.camera));
   }
   return lamps;
 }
@@ -126,7 +127,7 @@ bool vpLampConsensus::sizesFit(const vpVlpFix &fix, const std::vector<size_t> &u
   const vpHomogeneousMatrix cMw = fix.wMc.inverse();
   for (size_t i : usable) {
     const vpLampObservation &seen = m_observations[i];
-    const vpLamp *lamp = m_map.find(seen.id);
+    const vpLamp *lamp = m_lamps[i];
     if (lamp == nullptr || !std::isfinite(lamp->size) || seen.cut ||
         std::find(fix.lamps.begin(), fix.lamps.end(), seen.id) == fix.lamps.end()) {
       continue;

@@ -22,7 +22,8 @@ class vpLampConsensus
 public:
   using Solve = std::function<vpVlpFix(const std::vector<vpLampSight> &)>;
 
-  vpLampConsensus(const vpLampMap &map, const vpVlpRig &rig,
+  //! \param lamps The map's lamp of each observation; nullptr: none.
+  vpLampConsensus(std::vector<const vpLamp *> lamps, const vpVlpRig &rig,
                   const std::vector<vpLampObservation> &observations, double mapTolerance,
                   double outlierLikelihood);
 
@@ -52,7 +53,7 @@ private:
   vpVlpFix withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const;
   bool sizesFit(const vpVlpFix &fix, const std::vector<size_t> &usable) const;
 
-  const vpLampMap &m_map;
+  const std::vector<const vpLamp *> m_lamps; // of each observation
   const vpVlpRig &m_rig;
   const std::vector<vpLampObservation> &m_observations;
   double m_tolerance;  // m

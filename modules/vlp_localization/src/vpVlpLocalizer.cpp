@@ -15,6 +15,9 @@ BEGIN_VISP_NAMESPACE
 vpVlpLocalizer::vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map)
     : detector(rig, map), matcher(rig, map), m_rig(rig), m_map(map)
 {
+  for (size_t i = 0; i < map.lamps.size(); ++i) {
+    m_lampOf.emplace(map.lamps[i].id, i);
+  }
 }
 
 vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
@@ -37,7 +40,8 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
   }
 
   // Section 2.1.3: the pose from the rays to these lamps, two of them or all that agree with each other.
-  const vpLampConsensus consensus(m_map, m_rig, location.observations, mapTolerance, outlierLikelihood);
+  const vpLampConsensus consensus(lampsOf(location.observations), m_rig, location.observations, mapTolerance,
+                                  outlierLikelihood);
   location.fix = consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
     return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
   });
@@ -51,6 +55,16 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
     m_lastPose = {location.fix.wMb, frame.timestamp};
   }
   return location;
+}
+
+std::vector<const vpLamp *> vpVlpLocalizer::lampsOf(const std::vector<vpLampObservation> &observations) const
+{
+  std::vector<const vpLamp *> lamps;
+  for (const vpLampObservation &observation : observations) {
+    const auto found = m_lampOf.find(observation.id);
+    lamps.push_back(found == m_lampOf.end() ? nullptr : &m_map.lamps[found->second]);
+  }
+  return lamps;
 }
 
 vpLampMatch vpVlpLocalizer::matchByPlace(const std::vector<vpLampObservation> &observations,

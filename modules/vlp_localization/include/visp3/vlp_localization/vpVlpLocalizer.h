@@ -6,6 +6,8 @@
 #define vpVlpLocalizer_h
 
 #include <optional>
+#include <string>
+#include <unordered_map>
 #include <vector>
 
 #include <visp3/vlp_core/vpVlpFrame.h>
@@ -69,8 +71,12 @@ private:
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
 
+  //! The map's lamp of each, by its id; nullptr: none.
+  std::vector<const vpLamp *> lampsOf(const std::vector<vpLampObservation> &observations) const;
+
   vpVlpRig m_rig;
   vpLampMap m_map;
+  std::unordered_map<std::string, size_t> m_lampOf; // index into the map, by id
   std::optional<LastPose> m_lastPose;
 };
 
