@@ -91,8 +91,8 @@ public:
   /*!
     Standard deviations of duty and phase difference by the stripes, edges all seen: from the Fisher
     information of frequency, phase, duty, exposure (known to `exposureTolerance` only), phase difference,
-    offset and amplitude together, averaged over the phase. A pulse or gap shorter than the exposure is taken
-    for it.
+    offset and amplitude together, averaged over the phase. Of a pulse about as long as the exposure the
+    stripes do not say which is which.
   */
   vpStripeDoubt shapeSigma(const vpModulation &modulation, double lines) const;
 
