@@ -217,6 +217,13 @@ vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpL
   lamp.covariance = lamp.outline.centreCovariance;
   lamp.time = m_timing.middleAt(picture.transposed ? lamp.point.x() : lamp.point.y());
   lamp.cut = roi.cutAcross || roi.cutAlong;
+  const Eigen::Vector2d &centre = fit.outline.centre;
+  if (lamp.cut && !(centre.x() >= 0 && centre.x() < picture.grey.cols && centre.y() >= 0 &&
+                    centre.y() < picture.grey.rows)) {
+    // Less than half of its outline is seen, which fits longer and shorter ellipses about as well.
+    const double anywhere = 0.5 * lamp.outline.diameter();
+    lamp.covariance += anywhere * anywhere * Eigen::Matrix2d::Identity();
+  }
   return lamp;
 }
 

@@ -132,8 +132,8 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
 {
   static const double wordMisfit = 0.1;
   static const double explained = 2, nearlyExplained = 3; // chi-square per degree of freedom
-  const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, analyzer.exposureTolerance},
-                            envelope);
+  static const double exposureTolerance = 0.5;            // of its logarithm
+  const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, exposureTolerance}, envelope);
   const bool neither = !(unexplained < analyzer.maxMisfit);
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
   if (neither && (!word || word->inflation > explained)) {

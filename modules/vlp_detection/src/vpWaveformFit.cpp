@@ -90,23 +90,30 @@ double vpWaveformFit::waveform(const Vector &x, double t, Vector &derivative) co
   return value;
 }
 
-//! Weight of a parameter's prior and its mean.
-double vpWaveformFit::prior(int parameter, double &mean) const
+/*!
+  Prior of a parameter at \e x: chi-square, its curvature and its mean. The exposure's is Cauchy's: nearly
+  always it is as stated, and where it is not, it may be anything.
+*/
+vpWaveformFit::Prior vpWaveformFit::prior(int parameter, const Vector &x) const
 {
-  auto weight = [](double sigma) { return 1 / (sigma * sigma); };
+  auto bell = [&](double mean, double sigma) {
+    const double z = (x(parameter) - mean) / sigma;
+    return Prior{z * z, 1 / (sigma * sigma), mean};
+  };
+  if (!isFree(parameter)) {
+    return {};
+  }
   switch (parameter) {
-  case exposure:
-    mean = m_profile->exposure;
-    return weight(m_settings.exposureTolerance * m_profile->exposure);
+  case exposure: {
+    const Prior normal = bell(m_profile->exposure, m_settings.exposureTolerance * m_profile->exposure);
+    return {std::log1p(normal.chiSquare), normal.weight / (1 + normal.chiSquare), normal.mean};
+  }
   case duty:
-    mean = 0.5;
-    return weight(0.3); // the spread of a uniform one
+    return bell(0.5, 0.3); // the spread of a uniform one
   case phaseDifference:
-    mean = 0.25;
-    return weight(0.15);
+    return bell(0.25, 0.15);
   default:
-    mean = 0;
-    return 0;
+    return {};
   }
 }
 
@@ -180,11 +187,7 @@ double vpWaveformFit::cost(const Vector &x, bool derivatives)
   m_chiSquare = std::max(0.0, squares - 2 * c.dot(b) + c.dot(A * c));
   double sum = m_chiSquare;
   for (int p = 0; p < parameters; ++p) {
-    double mean;
-    const double weight = isFree(p) ? prior(p, mean) : 0;
-    if (weight > 0) {
-      sum += weight * (x(p) - mean) * (x(p) - mean);
-    }
+    sum += prior(p, x).chiSquare;
   }
   return sum;
 }
@@ -286,10 +289,9 @@ void vpWaveformFit::descend(int iterations)
     Vector g;
     normalEquations(m_curvature, g);
     for (int p = 0; p < parameters; ++p) {
-      double mean;
-      const double weight = prior(p, mean);
-      m_curvature(p, p) += isFree(p) ? weight : 1e12;
-      g(p) = isFree(p) ? g(p) - weight * (m_x(p) - mean) : 0;
+      const Prior known = prior(p, m_x);
+      m_curvature(p, p) += isFree(p) ? known.weight : 1e12;
+      g(p) = isFree(p) ? g(p) - known.weight * (m_x(p) - known.mean) : 0;
     }
     bool better = false;
     double gain = 0;

@@ -36,7 +36,7 @@ public:
     int envelopeOrder = 0; // up to 4
     bool twoPulse = false;
     double modelError = 0.03;
-    double exposureTolerance = 0.5;
+    double exposureTolerance = 0.1;
   };
 
   //! \param envelope How bright the lamp is at each line while it is lit, about, grey levels.
@@ -70,6 +70,9 @@ public:
 private:
   static constexpr int mostLinear = 6;
 
+  struct Prior {
+    double chiSquare = 0, weight = 0, mean = 0;
+  };
   struct Posterior {
     Vector mean;
     Matrix covariance;
@@ -93,7 +96,7 @@ private:
   double unlikely(const Vector &x) const;
   std::optional<Vector> exchanged() const;
   void keepPossible(Vector &x) const;
-  double prior(int parameter, double &mean) const;
+  Prior prior(int parameter, const Vector &x) const;
   int degreesOfFreedom() const;
 
   const vpStripeProfile *m_profile;

@@ -59,7 +59,8 @@ void vpWaveformFit::integrate()
   Vector reach = Vector::Ones();
   reach(phase) = reach(duty) = reach(phaseDifference) = 0.5 * m_line * m_x(frequency);
   reach(frequency) = reach(phase) / m_half;
-  reach(exposure) = m_settings.exposureTolerance * m_profile->exposure;
+  reach(exposure) = std::max(m_settings.exposureTolerance * m_profile->exposure,
+                             std::abs(m_x(exposure) - m_profile->exposure));
   const Matrix wide = reach.cwiseAbs2().cwiseInverse().asDiagonal();
   static const double gap = 1.15; // exposures from line to line
   Posterior posterior{m_x, (m_curvature / inflation + wide).inverse(), 0};
