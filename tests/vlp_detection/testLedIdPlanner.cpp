@@ -199,7 +199,7 @@ TEST(LedIdPlanner, FewerLampsAreFartherApart)
   EXPECT_LT(planner.spread(57, crystal, 100000).identifiers.size(), 100000u);
 }
 
-TEST(LedIdPlanner, RecogniserErrsNoMoreThanStated)
+TEST(LedIdPlannerStatistics, RecogniserErrsNoMoreThanStated)
 {
   const vpVlpRig rig = rigOf(resized);
   vpLedIdPlanner planner(rig);
@@ -233,7 +233,7 @@ TEST(LedIdPlanner, RecogniserErrsNoMoreThanStated)
 
 // From light on lines to an id, on the planned lamps of the least doubt allowed: clocks, row time and phase
 // are drawn, too.
-TEST(LedIdPlanner, AnalyserAndRecogniserTellTheLampsApart)
+TEST(LedIdPlannerStatistics, AnalyserAndRecogniserTellTheLampsApart)
 {
   for (const std::string &name : {fullSize, resized}) {
     const vpVlpRig rig = rigOf(name);

@@ -48,7 +48,7 @@ TEST(WordFit, ChipsAndRateOfAKnownFormat)
   EXPECT_LT(seen.misfit, 0.02);
 }
 
-TEST(WordFit, StrangersThatDifferInOneChipAreReadAsWhatTheyAre)
+TEST(WordFitStatistics, StrangersThatDifferInOneChipAreReadAsWhatTheyAre)
 {
   std::mt19937 random(2);
   for (bool known : {true, false}) {
