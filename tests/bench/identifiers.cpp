@@ -19,18 +19,6 @@
 
 namespace
 {
-vpLampMap mapOf(const std::vector<vpModulation> &identifiers)
-{
-  vpLampMap map;
-  for (const vpModulation &modulation : identifiers) {
-    vpLamp lamp;
-    lamp.id = std::to_string(map.lamps.size());
-    lamp.modulation = modulation;
-    map.lamps.push_back(lamp);
-  }
-  return map;
-}
-
 struct Setting {
   const char *name;
   vpSimulatedStripes stripes;
@@ -99,21 +87,21 @@ int main(int argc, char **argv)
   };
   const vpLedIdPlanner large = plannerOf("data/rigs/ub300-2048x1536.yaml", 7000),
                        small = plannerOf("data/rigs/ub300-800x600.yaml", 3900);
-  const vpLampMap fiveHundred = mapOf(large.spread(full.lines, crystal, 500).identifiers);
-  const vpLampMap fifty = mapOf(large.spread(full.lines, crystal, 50).identifiers);
+  const vpLampMap fiveHundred = vpMapOf(large.spread(full.lines, crystal, 500).identifiers);
+  const vpLampMap fifty = vpMapOf(large.spread(full.lines, crystal, 50).identifiers);
   std::printf("stripe counting in the same ranges: %zu and %zu\n", large.bins(full.lines),
               small.bins(nearest.lines));
   std::printf("%-44s %5s %7s %9s %9s %9s   %s\n", "", "ids", "lamps", "right %", "wrong %", "none %",
               "rms Hz, in own sigmas (oscillator included)");
   run({"2048x1536, row time to 0.005 %", full, rowTimeSigma, 1, fiveHundred}, frames);
   run({"2048x1536, all that the planner finds", full, rowTimeSigma, 1,
-       mapOf(large.largest(full.lines, crystal).identifiers)},
+       vpMapOf(large.largest(full.lines, crystal).identifiers)},
       frames);
   run({"800x600 nearest, row time to 0.005 %", nearest, rowTimeSigma, 1,
-       mapOf(small.spread(nearest.lines, crystal, 150).identifiers)},
+       vpMapOf(small.spread(nearest.lines, crystal, 150).identifiers)},
       frames);
   run({"800x600 nearest, all that the planner finds", nearest, rowTimeSigma, 1,
-       mapOf(small.largest(nearest.lines, crystal).identifiers)},
+       vpMapOf(small.largest(nearest.lines, crystal).identifiers)},
       frames);
   for (const vpLampMap *map : {&fifty, &fiveHundred}) {
     for (double known : {1e-3, 1e-2}) {

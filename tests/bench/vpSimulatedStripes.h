@@ -8,9 +8,11 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_detection/vpStripeAnalyzer.h>
 #include <visp3/vlp_simulation/vpLampLight.h>
 
@@ -51,6 +53,19 @@ struct vpSimulatedStripes {
     return profile;
   }
 };
+
+//! Lamps that blink like this, their ids their numbers.
+inline vpLampMap vpMapOf(const std::vector<vpModulation> &identifiers)
+{
+  vpLampMap map;
+  for (const vpModulation &modulation : identifiers) {
+    vpLamp lamp;
+    lamp.id = std::to_string(map.lamps.size());
+    lamp.modulation = modulation;
+    map.lamps.push_back(lamp);
+  }
+  return map;
+}
 
 //! Does \e count trials on all cores, each with a generator that its number seeds.
 inline void vpRunTrials(int count, const std::function<void(int trial, std::mt19937_64 &generator)> &trial)

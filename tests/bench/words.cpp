@@ -33,13 +33,7 @@ void run(const char *name, const std::vector<vpModulation> &words, const vpSimul
          Sender sender, int lamps)
 {
   static const double rowTimeSigma = 5e-5; // as a share of it
-  vpLampMap map;
-  for (const vpModulation &word : words) {
-    vpLamp lamp;
-    lamp.id = std::to_string(map.lamps.size());
-    lamp.modulation = word;
-    map.lamps.push_back(lamp);
-  }
+  const vpLampMap map = vpMapOf(words);
   vpRollingShutter shutter;
   shutter.rowTime = setting.rowTime;
   shutter.rowTimeSigma = rowTimeSigma * shutter.rowTime;

@@ -56,6 +56,11 @@ double vpModulation::repetitionFrequency() const
   return 0;
 }
 
+bool vpModulation::sameWord(const std::string &chips, const std::string &others)
+{
+  return chips.size() == others.size() && (chips + chips).find(others) != std::string::npos;
+}
+
 bool vpModulation::sameSignal(const vpModulation &other) const
 {
   if (kind != other.kind) {
@@ -66,11 +71,8 @@ bool vpModulation::sameSignal(const vpModulation &other) const
     return frequency == other.frequency && duty == other.duty;
   case Kind::twoPulse:
     return frequency == other.frequency && duty == other.duty && phaseDifference == other.phaseDifference;
-  case Kind::word: {
-    const std::string mine = chips(), others = other.chips();
-    return chipRate == other.chipRate && mine.size() == others.size() &&
-           (mine + mine).find(others) != std::string::npos;
-  }
+  case Kind::word:
+    return chipRate == other.chipRate && sameWord(chips(), other.chips());
   case Kind::unmodulated:
     break;
   }

@@ -36,11 +36,6 @@ bool sameKind(Signal signal, vpModulation::Kind kind)
          (signal == Signal::coded && kind == vpModulation::Kind::word);
 }
 
-bool sameWord(const std::string &chips, const std::string &others)
-{
-  return chips.size() == others.size() && (chips + chips).find(others) != std::string::npos;
-}
-
 //! Density of what was seen under a lamp that the map does not know: any frequency of two decades, any duty,
 //! any phase difference, any word alike.
 double unknownDensity(const vpStripeFeatures &seen)
@@ -78,7 +73,7 @@ struct vpLedIdRecognizer::Candidate {
   double frequency; // Hz
   double sigma;     // Hz, of the frequency seen about it, row time exact
   double weight;    // prior probability, times the density of all features but the frequency
-  bool fits;        // in all features but the frequency
+  bool fits;        // within the gates: of all features but the frequency, and of that once judged
   double probability = 0;
 };
 
@@ -181,7 +176,7 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
     compare(seen.phaseDifference - sent.phaseDifference, std::hypot(seen.phaseDifferenceSigma, phaseError));
   }
   if (sent.kind == vpModulation::Kind::word) {
-    if (!sameWord(seen.chips, sent.chips())) {
+    if (!vpModulation::sameWord(seen.chips, sent.chips())) {
       return;
     }
     candidate.weight *= seen.chipsConfidence;

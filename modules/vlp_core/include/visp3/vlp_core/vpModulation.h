@@ -49,6 +49,9 @@ struct VISP_EXPORT vpModulation {
   //! do.
   bool sameSignal(const vpModulation &other) const;
 
+  //! Whether chips are those of one word, wherever it begins.
+  static bool sameWord(const std::string &chips, const std::string &others);
+
   /*!
     Fourier coefficient c_k of the light power p(t) = sum over all k of c_k exp(2 i pi k f t), with f the
     repetition frequency and t = 0 at the start of the first pulse (of the first chip of a word). An unset

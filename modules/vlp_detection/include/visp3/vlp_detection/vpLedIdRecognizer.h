@@ -33,9 +33,9 @@ struct VISP_EXPORT vpRowTimeError {
   time is known to 1 % calibrate it for each other.
 
   An identifier that lies within `gate` standard deviations in frequency, and `shapeGate` in duty and phase
-  difference, is a candidate. One that has at
-  least `minConfidence` and a single lamp gives the id. What several lamps of one identifier leave open, or
-  several candidates, is for geometry to decide: `candidates` hands them on.
+  difference, is a candidate. One that has at least `minConfidence` and a single lamp gives the id. What
+  several lamps of one identifier leave open, or several candidates, is for geometry to decide: `candidates`
+  hands them on.
 */
 class VISP_EXPORT vpLedIdRecognizer
 {
