@@ -141,9 +141,9 @@ void strangers(const Map &map, int lamps, double apart)
     recognizer.recognize(lamp);
     const bool near = std::any_of(map.map.lamps.begin(), map.map.lamps.end(), [&](const vpLamp &other) {
       return std::abs(other.modulation.frequency - modulation.frequency) <
-                 recognizer.gate * combinedSigma(stripes, other.modulation.frequency) &&
-             (!other.modulation.duty ||
-              std::abs(*other.modulation.duty - *modulation.duty) < recognizer.gate * recognizer.dutyError);
+                 recognizer.boundGate * combinedSigma(stripes, other.modulation.frequency) &&
+             (!other.modulation.duty || std::abs(*other.modulation.duty - *modulation.duty) <
+                                            recognizer.shapeGate * recognizer.dutyError);
     });
     const std::lock_guard<std::mutex> lock(guard);
     accepted += !lamp.id.empty();

@@ -60,6 +60,7 @@ bool vpLedIdEvidence::add(const vpStripeFeatures &seen)
   m_features.frequency = before.frequency;
   m_features.frequencySigma = before.frequencySigma;
   average(m_features.frequency, m_features.frequencySigma, seen.frequency, seen.frequencySigma);
+  m_features.frequencyBound = 1 / std::hypot(1 / before.frequencyBound, 1 / seen.frequencyBound);
   if (seen.signal == Signal::coded) {
     m_features.chipsConfidence = 1 - (1 - before.chipsConfidence) * (1 - seen.chipsConfidence);
   } else {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -51,7 +52,7 @@ double unknownDensity(const vpStripeFeatures &seen)
 }
 
 //! Why the features name no lamp, whatever the map; empty where they may.
-std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt)
+std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt, double maxSpread)
 {
   if (seen.signal == Signal::unmodulated) {
     return "no stripes";
@@ -61,6 +62,9 @@ std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt)
   }
   if (!(seen.frequencySigma < maxFrequencyDoubt * seen.frequency)) {
     return "too few stripes for a frequency";
+  }
+  if (seen.frequencySigma > maxSpread * seen.frequencyBound) {
+    return "its edges hide between the lines";
   }
   return "";
 }
@@ -72,6 +76,7 @@ struct vpLedIdRecognizer::Candidate {
   size_t identifier;
   double frequency; // Hz
   double sigma;     // Hz, of the frequency seen about it, row time exact
+  double bound;     // Hz, least sigma where edges hide nowhere; infinite where it is not known
   double weight;    // prior probability, times the density of all features but the frequency
   bool fits;        // within the gates: of all features but the frequency, and of that once judged
   double probability = 0;
@@ -99,11 +104,12 @@ struct vpLedIdRecognizer::Sight {
     return sum;
   }
   //! Probabilities of the candidates, where row-time errors have these weights, which add up to 1.
-  void judge(const std::vector<double> &errors, const std::vector<double> &weights, double gate);
+  void judge(const std::vector<double> &errors, const std::vector<double> &weights, double gate,
+             double boundGate);
 };
 
 void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const std::vector<double> &weights,
-                                     double gate)
+                                     double gate, double boundGate)
 {
   double mean = 0, variance = 0;
   for (size_t k = 0; k < errors.size(); ++k) {
@@ -114,8 +120,10 @@ void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const st
   double sum = unknown;
   for (Candidate &candidate : candidates) {
     const double expected = candidate.frequency * (1 + mean);
-    const double sigma = std::hypot(candidate.sigma, candidate.frequency * std::sqrt(variance));
-    candidate.fits = candidate.fits && std::abs(frequency - expected) < gate * sigma;
+    const double common = candidate.frequency * std::sqrt(variance);
+    const double reach =
+        std::min(gate * std::hypot(candidate.sigma, common), boundGate * std::hypot(candidate.bound, common));
+    candidate.fits = candidate.fits && std::abs(frequency - expected) < reach;
     candidate.probability = 0;
     for (size_t k = 0; k < errors.size(); ++k) {
       candidate.probability += weights[k] * candidate.weight * density(candidate, errors[k]);
@@ -158,7 +166,10 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   Candidate candidate;
   candidate.identifier = index;
   candidate.frequency = sent.repetitionFrequency();
-  candidate.sigma = std::hypot(seen.frequencySigma, 1e-6 * identifier.oscillatorPpm * candidate.frequency);
+  const double clock = 1e-6 * identifier.oscillatorPpm * candidate.frequency;
+  candidate.sigma = std::hypot(seen.frequencySigma, clock);
+  candidate.bound = std::isfinite(seen.frequencyBound) ? std::hypot(seen.frequencyBound, clock)
+                                                       : std::numeric_limits<double>::infinity();
   candidate.weight = (1 - unknownPrior) * static_cast<double>(identifier.lamps.size()) /
                      static_cast<double>(m_map.lamps.size());
   candidate.fits = true;
@@ -188,7 +199,7 @@ vpLedIdRecognizer::Sight vpLedIdRecognizer::sightOf(const vpLampObservation &lam
 {
   const vpStripeFeatures &seen = lamp.features;
   Sight sight;
-  if (!unreadable(seen, maxFrequencyDoubt).empty()) {
+  if (!unreadable(seen, maxFrequencyDoubt, maxSpread).empty()) {
     return sight;
   }
   sight.readable = true;
@@ -264,7 +275,7 @@ vpRowTimeError vpLedIdRecognizer::recognize(std::vector<vpLampObservation> &lamp
   for (size_t i = 0; i < lamps.size(); ++i) {
     std::vector<double> others = together;
     std::transform(others.begin(), others.end(), logs[i].begin(), others.begin(), std::minus<double>());
-    sights[i].judge(errors, normalised(std::move(others)), gate);
+    sights[i].judge(errors, normalised(std::move(others)), gate, boundGate);
     decide(lamps[i], sights[i]);
   }
   vpRowTimeError error;
@@ -288,7 +299,7 @@ void vpLedIdRecognizer::decide(vpLampObservation &lamp, const Sight &sight) cons
 {
   lamp.id.clear();
   lamp.candidates.clear();
-  lamp.remark = unreadable(lamp.features, maxFrequencyDoubt);
+  lamp.remark = unreadable(lamp.features, maxFrequencyDoubt, maxSpread);
   lamp.confidence = 1; // of being none of them
   if (!sight.readable) {
     return;

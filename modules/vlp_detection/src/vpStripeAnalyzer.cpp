@@ -109,6 +109,7 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
   features.signal = twoPulse ? vpStripeFeatures::Signal::twoPulse : vpStripeFeatures::Signal::pwm;
   features.frequency = fit.value(P::frequency);
   features.frequencySigma = fit.sigma(P::frequency);
+  features.frequencyBound = fit.frequencyBound();
   features.duty = fit.value(P::duty);
   features.dutySigma = fit.sigma(P::duty);
   features.exposure = fit.value(P::exposure);
@@ -164,7 +165,8 @@ void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Fou
 {
   const double none = std::numeric_limits<double>::quiet_NaN();
   features.signal = vpStripeFeatures::Signal::coded;
-  features.frequency = features.frequencySigma = features.duty = features.dutySigma = none;
+  features.frequency = features.frequencySigma = features.frequencyBound = none;
+  features.duty = features.dutySigma = none;
   features.phaseDifference = features.phaseDifferenceSigma = none;
   features.exposure = features.exposureSigma = none;
   if (found) {
@@ -187,7 +189,8 @@ double depthOf(const vpStripeProfile &profile)
 }
 
 //! How many bends the envelope may have.
-int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
+int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks,
+                    const std::vector<size_t> &whole)
 {
   static const double evenEmitter = 1.6; // the brightest stripe over the dimmest
   static const int even = 2, uneven = 4;
@@ -195,7 +198,7 @@ int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &p
     return 0;
   }
   const auto [dimmest, brightest] = std::minmax_element(
-      peaks.begin(), peaks.end(), [&](size_t a, size_t b) { return profile.light[a] < profile.light[b]; });
+      whole.begin(), whole.end(), [&](size_t a, size_t b) { return profile.light[a] < profile.light[b]; });
   const bool bent = profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
   return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
 }
@@ -250,8 +253,9 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   vpWaveformFit::Settings settings;
   settings.modelError = modelError;
   settings.exposureTolerance = exposureTolerance;
-  settings.envelopeOrder = envelopeOrderOf(profile, peaks);
-  const std::vector<double> envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
+  const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
+  settings.envelopeOrder = envelopeOrderOf(profile, peaks, whole);
+  const std::vector<double> envelope = vpStripeStarts::envelope(profile, whole, settings.envelopeOrder);
   std::vector<vpStripeStarts::Sinusoid> candidates =
       vpStripeStarts::periodogram(profile, envelope, modelError);
   if (candidates.empty() || candidates.front().gain < minSignificance ||

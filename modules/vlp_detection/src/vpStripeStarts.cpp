@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -66,6 +67,15 @@ std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
     peaks.erase(peaks.begin());
   }
   return peaks;
+}
+
+std::vector<size_t> vpStripeStarts::wholePeaks(const vpStripeProfile &profile,
+                                               const std::vector<size_t> &peaks)
+{
+  std::vector<size_t> whole;
+  std::copy_if(peaks.begin(), peaks.end(), std::back_inserter(whole),
+               [&profile](size_t peak) { return peak != 0 && peak + 1 != profile.light.size(); });
+  return whole.empty() ? peaks : whole;
 }
 
 std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks,

@@ -36,7 +36,7 @@ public:
     int envelopeOrder = 0; // up to 4
     bool twoPulse = false;
     double modelError = 0.03;
-    double exposureTolerance = 0.1;
+    double exposureTolerance = 0.02;
   };
 
   //! \param envelope How bright the lamp is at each line while it is lit, about, grey levels.
@@ -62,6 +62,11 @@ public:
 
   double value(Parameter p) const { return m_x(p); }
   double sigma(Parameter p) const { return m_sigma(p); }
+  /*!
+    Standard deviation, Hz, that the frequency would have of a sinusoid as strong and as noisy as the stripes
+    (Rife and Boorstyn 1974), its edges as often as not in gaps between the exposures. After integrate().
+  */
+  double frequencyBound() const;
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
   //! Share of the stripes' power left unexplained, beyond what noise explains.
@@ -115,6 +120,7 @@ private:
   Matrix m_curvature = Matrix::Zero(); // of half the cost, priors included
   double m_cost = 0;
   double m_chiSquare = 0; // of the profile alone
+  double m_inflation = 1; // of all variances, by what the model leaves out
   // Of the latest cost(): at each line the wave, its derivatives; and the linear parameters.
   std::vector<double> m_wave;
   std::vector<Vector> m_derivative;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -54,6 +55,7 @@ void vpWaveformFit::integrate()
   // A variance told from few residuals may be any.
   const double degrees = degreesOfFreedom();
   const double inflation = std::max(1.0, together * m_chiSquare / degrees) * (1 + 6 / (degrees * degrees));
+  m_inflation = inflation;
 
   // Where no line feels an edge, it lies within half the distance of two lines, about.
   Vector reach = Vector::Ones();
@@ -89,6 +91,34 @@ void vpWaveformFit::integrate()
   }
   m_sigma = (posterior.covariance.diagonal().cwiseMax(0) + doubt.cwiseAbs2()).cwiseSqrt();
   m_cost = cost(m_x, true);
+}
+
+double vpWaveformFit::frequencyBound() const
+{
+  // Of all lines that there might be: those that there are may all miss the brightest moment.
+  static const int moments = 64;
+  double dark = std::numeric_limits<double>::infinity(), bright = -dark;
+  Vector derivative;
+  for (int k = 0; k < moments; ++k) {
+    const double light = waveform(m_x, k / (moments * m_x(frequency)), derivative);
+    dark = std::min(dark, light);
+    bright = std::max(bright, light);
+  }
+  double weight = 0, first = 0, second = 0; // moments of the information along the time
+  for (size_t i = 0; i < m_wave.size(); ++i) {
+    const double amplitude = 0.5 * (bright - dark) * envelope(i);
+    const double information = 0.5 * m_weight[i] * amplitude * amplitude / m_inflation;
+    const double t = m_profile->time[i] - m_middle;
+    weight += information;
+    first += information * t;
+    second += information * t * t;
+  }
+  const double sinusoid = 1 / (2 * M_PI * std::sqrt(std::max(second - first * first / weight, 1e-300)));
+  // Edges that lie in a gap are anywhere in it; a line through all of them over the time has this slope's
+  // error.
+  const double gap = std::max(0.0, m_line - m_profile->exposure), f = m_x(frequency);
+  const double edges = std::max(2.0, 2 * m_half * 2 * pulses() * f);
+  return std::hypot(sinusoid, f * gap / (2 * m_half * std::sqrt(edges)));
 }
 
 /*!

@@ -62,7 +62,9 @@ struct VISP_EXPORT vpStripeFeatures {
   double area = 0;                                             // px of the lamp's region
   double frequency = std::numeric_limits<double>::quiet_NaN(); // Hz, at which the signal repeats
   double frequencySigma =
-      std::numeric_limits<double>::quiet_NaN();           // Hz, of the estimate alone, row time exact
+      std::numeric_limits<double>::quiet_NaN(); // Hz, of the estimate alone, row time exact
+  double frequencyBound =
+      std::numeric_limits<double>::quiet_NaN();           // Hz, that sigma where no edge hides from the lines
   double duty = std::numeric_limits<double>::quiet_NaN(); // lit share of the period
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
   double phaseDifference = std::numeric_limits<double>::quiet_NaN(); // periods, twoPulse only

@@ -91,7 +91,9 @@ public:
   double maxError = 1e-3;                       // probability of a wrong id, of each lamp
   double minAcceptance = 0.995;                 // probability of any id, of each lamp
   double minConfidence = 0.99;                  // as vpLedIdRecognizer::minConfidence
-  double gate = 3, shapeGate = 4;               // standard deviations, as vpLedIdRecognizer's
+  double gate = 3;                              // standard deviations that vpLedIdRecognizer's two gates on
+                                                // the frequency leave, about
+  double shapeGate = 4;                         // standard deviations, as vpLedIdRecognizer's
   std::vector<double> duties = {0.2, 0.5, 0.8}; // that lamps may have, at most 8
   //! Hz; NaN: that of `leastStripes` on the lamp, yet at least `flicker`.
   double lowestFrequency = std::numeric_limits<double>::quiet_NaN();

@@ -66,7 +66,7 @@ public:
   double modelError = 0.03; // share of a line's light that the model may be off by, standard deviation
   //! How far the exposure is off the rig's, as a share of it: the half-width of a Cauchy distribution. Blur
   //! and a phone's tone curve soften edges far more, now and then.
-  double exposureTolerance = 0.1;
+  double exposureTolerance = 0.02;
   //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained; no word of unknown format
   //! is sought below. Between the little that there is: pwm lamps of phones leave up to 0.09, coded lamps
   //! seen for less than a word from 0.165 on.
