@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "vpStripeStarts.h"
 #include "vpWaveformFit.h"
@@ -20,6 +21,42 @@ namespace
 
 const double allExplained = 0.01; // misfit: no other start will do better
 
+//! How many bends the envelope may have.
+int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
+{
+  static const double evenEmitter = 1.6; // the brightest stripe over the dimmest
+  static const int even = 2, uneven = 4;
+  if (peaks.size() < 2) {
+    return 0;
+  }
+  const auto [dimmest, brightest] = std::minmax_element(
+      peaks.begin(), peaks.end(), [&](size_t a, size_t b) { return profile.light[a] < profile.light[b]; });
+  const bool bent = profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
+  return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
+}
+
+//! How bright the lamp is while it is lit, by these peaks of its profile, and what its stripes may then be.
+struct Start {
+  vpWaveformFit::Settings settings;
+  std::vector<double> envelope;
+  std::vector<vpStripeStarts::Sinusoid> candidates; // the best first
+  std::vector<vpStripeStarts::Edge> edges;
+  std::optional<vpStripeStarts::Pulses> pulses;
+
+  Start(const vpStripeProfile &profile, const std::vector<size_t> &peaks, const vpStripeAnalyzer &analyzer)
+  {
+    static const size_t mostCandidates = 3;
+    settings.modelError = analyzer.modelError;
+    settings.exposureTolerance = analyzer.exposureTolerance;
+    settings.envelopeOrder = envelopeOrderOf(profile, peaks);
+    envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
+    candidates = vpStripeStarts::periodogram(profile, envelope, analyzer.modelError);
+    candidates.resize(std::min(candidates.size(), mostCandidates));
+    edges = vpStripeStarts::edges(profile, envelope);
+    pulses = vpStripeStarts::pulses(edges);
+  }
+};
+
 //! The best of several starts.
 void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 {
@@ -28,23 +65,20 @@ void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
   }
 }
 
-std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile,
-                                    const std::vector<vpStripeStarts::Sinusoid> &candidates,
-                                    const std::optional<vpStripeStarts::Pulses> &pulses,
-                                    const vpWaveformFit::Settings &settings,
-                                    const std::vector<double> &envelope)
+std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const Start &start)
 {
   std::optional<vpWaveformFit> best;
-  if (pulses) {
-    vpWaveformFit fit(profile, settings, envelope);
-    if (fit.run(pulses->frequency, pulses->phase, pulses->duty, 0, 0, true) && fit.preferStatedExposure()) {
+  if (start.pulses) {
+    const vpStripeStarts::Pulses &pulses = *start.pulses;
+    vpWaveformFit fit(profile, start.settings, start.envelope);
+    if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, 0, true) && fit.preferStatedExposure()) {
       if (fit.misfit() < allExplained) {
         return fit;
       }
       keepBetter(best, std::move(fit));
     }
   }
-  for (const vpStripeStarts::Sinusoid &candidate : candidates) {
+  for (const vpStripeStarts::Sinusoid &candidate : start.candidates) {
     std::vector<double> exposures{profile.exposure};
     static const double longExposure =
         0.3; // periods: it may be misstated, and from there no way leads to sharp stripes
@@ -53,7 +87,7 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile,
     }
     for (double exposure : exposures) {
       for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
-        vpWaveformFit fit(profile, settings, envelope);
+        vpWaveformFit fit(profile, start.settings, start.envelope);
         // The first harmonic peaks in the middle of the pulse.
         if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure) &&
             fit.preferStatedExposure()) {
@@ -65,16 +99,13 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile,
   return best;
 }
 
-std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
-                                         const std::vector<vpStripeStarts::Sinusoid> &candidates,
-                                         const std::optional<vpStripeStarts::Pulses> &pulses,
-                                         vpWaveformFit::Settings settings,
-                                         const std::vector<double> &envelope)
+std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, const Start &start)
 {
+  vpWaveformFit::Settings settings = start.settings;
   settings.twoPulse = true;
   std::optional<vpWaveformFit> best;
-  if (pulses) {
-    vpWaveformFit fit(profile, settings, envelope);
+  if (const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::pairsOfPulses(start.edges)) {
+    vpWaveformFit fit(profile, settings, start.envelope);
     if (fit.run(pulses->frequency, pulses->phase, pulses->duty, pulses->phaseDifference, 0, true) &&
         fit.preferStatedExposure()) {
       if (fit.misfit() < allExplained) {
@@ -84,16 +115,16 @@ std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile,
     }
   }
   const double span = profile.time.back() - profile.time.front();
-  for (const vpStripeStarts::Sinusoid &candidate : candidates) {
+  for (const vpStripeStarts::Sinusoid &candidate : start.candidates) {
     for (int multiple = 1; multiple <= 2; ++multiple) { // the second harmonic may be the stronger
       const double f = candidate.frequency / multiple;
       if (f * std::abs(span) < 0.9) {
         continue;
       }
       for (double k : {0.15, 0.25, 0.35, 0.45}) {
-        for (double start : {0.0, 0.25, 0.5, 0.75}) {
-          vpWaveformFit fit(profile, settings, envelope);
-          if (fit.run(f, start, 0.3, k) && fit.preferStatedExposure()) {
+        for (double phase : {0.0, 0.25, 0.5, 0.75}) {
+          vpWaveformFit fit(profile, settings, start.envelope);
+          if (fit.run(f, phase, 0.3, k) && fit.preferStatedExposure()) {
             keepBetter(best, std::move(fit));
           }
         }
@@ -188,21 +219,6 @@ double depthOf(const vpStripeProfile &profile)
   return high > 0 ? std::clamp((high - low) / (high + low), 0.0, 1.0) : 0;
 }
 
-//! How many bends the envelope may have.
-int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks,
-                    const std::vector<size_t> &whole)
-{
-  static const double evenEmitter = 1.6; // the brightest stripe over the dimmest
-  static const int even = 2, uneven = 4;
-  if (peaks.size() < 2) {
-    return 0;
-  }
-  const auto [dimmest, brightest] = std::minmax_element(
-      whole.begin(), whole.end(), [&](size_t a, size_t b) { return profile.light[a] < profile.light[b]; });
-  const bool bent = profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
-  return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
-}
-
 //! Where stripes are too few or too blurred for what was fitted to mean much.
 void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edgesAgree)
 {
@@ -215,11 +231,9 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
   const double periods = span * features.frequency;
   // Two stripes are soon explained: what is none, a shaded wall, leaves more of itself unexplained than a
   // lamp.
-  static const double few = 2, fewMisfit = 0.03, enough = 3, enoughMisfit = 0.09;
-  const double most =
-      periods > enough
-          ? 1
-          : fewMisfit + (enoughMisfit - fewMisfit) * std::clamp((periods - few) / (enough - few), 0.0, 1.0);
+  static const double few = 2, fewMisfit = 0.03, enough = 3, enoughMisfit = 0.09, many = 5;
+  const double share = std::clamp((periods - few) / (enough - few), 0.0, 1.0);
+  const double most = periods > many ? 1 : fewMisfit + (enoughMisfit - fewMisfit) * share;
   // Nor is what hardly ever shines, or hardly ever does not: a dim rim, a crossbar.
   static const double leastDuty = 0.05;
   const bool shines = std::min(features.duty, 1 - features.duty) > leastDuty;
@@ -250,23 +264,23 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   features.stripes = static_cast<unsigned int>(peaks.size());
   features.modulation = depthOf(profile);
 
-  vpWaveformFit::Settings settings;
-  settings.modelError = modelError;
-  settings.exposureTolerance = exposureTolerance;
-  const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
-  settings.envelopeOrder = envelopeOrderOf(profile, peaks, whole);
-  const std::vector<double> envelope = vpStripeStarts::envelope(profile, whole, settings.envelopeOrder);
-  std::vector<vpStripeStarts::Sinusoid> candidates =
-      vpStripeStarts::periodogram(profile, envelope, modelError);
-  if (candidates.empty() || candidates.front().gain < minSignificance ||
+  Start start(profile, peaks, *this);
+  if (start.candidates.empty() || start.candidates.front().gain < minSignificance ||
       features.modulation < minModulation || profile.agreement < minAgreement) {
     return features;
   }
-  candidates.resize(std::min<size_t>(candidates.size(), 3));
-
-  const std::vector<vpStripeStarts::Edge> edges = vpStripeStarts::edges(profile, envelope);
-  const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::pulses(edges);
-  std::optional<vpWaveformFit> pwm = fitPwm(profile, candidates, pulses, settings, envelope);
+  const Start byAll = start;
+  std::optional<vpWaveformFit> pwm = fitPwm(profile, start);
+  // A stripe at the lamp's end is dim because the lamp is, or because it is not whole.
+  const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
+  if (whole.size() < peaks.size()) {
+    Start byWhole(profile, whole, *this);
+    std::optional<vpWaveformFit> other = fitPwm(profile, byWhole);
+    if (other && (!pwm || other->cost() < pwm->cost())) {
+      pwm = std::move(other);
+      start = std::move(byWhole);
+    }
+  }
   if (pwm) {
     pwm->integrate();
     take(features, *pwm, false);
@@ -274,19 +288,18 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   // A second pulse explains a little of what blur and tone curve do to one, too.
   static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;
   if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
-    std::optional<vpWaveformFit> two =
-        fitTwoPulse(profile, candidates, vpStripeStarts::pairsOfPulses(edges), settings, envelope);
+    std::optional<vpWaveformFit> two = fitTwoPulse(profile, start);
     if (two && two->misfit() < maxMisfit &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
       two->integrate();
       take(features, *two, true);
     }
   }
-  widen(features, profile, pulses.has_value());
+  widen(features, profile, start.pulses.has_value());
   static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
   if (!(features.misfit < beyondDoubt)) {
     const std::optional<vpWordSearch::Found> word =
-        findWord(profile, envelope, settings.envelopeOrder, *this, features.misfit);
+        findWord(profile, byAll.envelope, byAll.settings.envelopeOrder, *this, features.misfit);
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }

@@ -24,8 +24,8 @@ namespace vpStripeStarts
 std::vector<size_t> peaks(const vpStripeProfile &profile);
 
 /*!
-  Those that may be as bright as the lamp. A stripe that is brightest on the profile's first or last line is
-  the end of one whose rest is not seen: such a one only where there is no other.
+  Those that are surely as bright as the lamp. A stripe that is brightest on the profile's first or last line
+  may be the end of one whose rest is not seen: such a one only where there is no other.
 */
 std::vector<size_t> wholePeaks(const vpStripeProfile &profile, const std::vector<size_t> &peaks);
 
