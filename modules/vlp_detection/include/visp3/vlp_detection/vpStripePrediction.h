@@ -45,7 +45,9 @@ public:
   double margin = 1.3; // standard deviations of frequency and duty over their bounds
   //! Share of its light by which a line may be off beyond noise: what the analyser puts into its own sigmas.
   double modelError = vpStripeAnalyzer().modelError;
-  double exposureTolerance = vpStripeAnalyzer().exposureTolerance;
+  //! Share of the exposure by which the rig's may be off. More than vpStripeAnalyzer expects: a plan has to
+  //! hold for cameras that expose for a line more or less than they say.
+  double exposureTolerance = 0.1;
   double dutyError = 0.03;  // as vpLedIdRecognizer::dutyError
   double phaseError = 0.01; // periods, as vpLedIdRecognizer::phaseError
 
