@@ -111,6 +111,27 @@ TEST(LedIdRecognizer, UncertainFrequencyIsNoId)
   EXPECT_TRUE(recognized(map, stripes(2000, 400)).id.empty());
 }
 
+// Where edges hide, a wide posterior must not let strangers in that would be refused elsewhere.
+TEST(LedIdRecognizer, GateNoWiderThanEdgesAnywhereLeave)
+{
+  const vpLampMap map{{lamp("A", 2000)}};
+  vpLampObservation seen = stripes(2007, 3);
+  EXPECT_EQ(recognized(map, seen).id, "A");
+  seen.features.frequencyBound = 2;
+  EXPECT_TRUE(recognized(map, seen).id.empty());
+  seen.features.frequency = 2004;
+  EXPECT_EQ(recognized(map, seen).id, "A");
+}
+
+TEST(LedIdRecognizer, HiddenEdgesNameNoLamp)
+{
+  vpLampObservation seen = stripes(2000, 9);
+  seen.features.frequencyBound = 2;
+  seen = recognized({{lamp("A", 2000)}}, seen);
+  EXPECT_TRUE(seen.id.empty());
+  EXPECT_NE(seen.remark.find("hide"), std::string::npos);
+}
+
 TEST(LedIdRecognizer, PhaseDifferenceTellsTwoPulseLampsApart)
 {
   vpLampMap map{{lamp("A", 1500, 0.3), lamp("B", 1500, 0.3), lamp("C", 1500, 0.3)}};

@@ -128,6 +128,24 @@ TEST_P(Pwm, FrequencyAndDutyWithTheirSigma)
 INSTANTIATE_TEST_SUITE_P(RowsAndColumns, Pwm,
                          testing::Combine(testing::Values(150.0, 30.0), testing::Values(false, true)));
 
+// The lamp's first or last line may show the dim end of a stripe, which is no sign of a dim rim.
+TEST(StripeAnalyzer, StripesCutByTheRimDoNotBiasTheFrequency)
+{
+  Spread frequencies;
+  for (unsigned int trial = 0; trial < 200; ++trial) {
+    Scene scene;
+    scene.lamp.frequency = 1000 + 6 * trial;
+    scene.seed = trial + 1;
+    scene.lamp.pwm(0.35);
+    const vpStripeFeatures seen = scene.features();
+    ASSERT_EQ(seen.signal, Signal::pwm) << "trial " << trial;
+    frequencies.add(seen.frequency - scene.lamp.frequency, seen.frequencySigma);
+  }
+  frequencies.print("frequency, Hz");
+  EXPECT_EQ(frequencies.within, 200);
+  EXPECT_LT(frequencies.rms(), 0.8);
+}
+
 TEST(StripeAnalyzer, LongExposureDoesNotBiasFrequencyOrDuty)
 {
   std::mt19937 random(3);
