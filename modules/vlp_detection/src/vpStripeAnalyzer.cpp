@@ -248,6 +248,7 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
     static const double anyDuty = 0.3, cycles = 0.1; // standard deviations, of cycles over the profile
     features.dutySigma = std::max(features.dutySigma, anyDuty);
     features.frequencySigma = std::max(features.frequencySigma, cycles / span);
+    features.frequencyBound = std::max(features.frequencyBound, cycles / span);
   }
 }
 
