@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <string>
 
@@ -76,7 +75,7 @@ struct vpLedIdRecognizer::Candidate {
   size_t identifier;
   double frequency; // Hz
   double sigma;     // Hz, of the frequency seen about it, row time exact
-  double bound;     // Hz, least sigma where edges hide nowhere; infinite where it is not known
+  double clock;     // Hz, the share of it that is the lamp's own
   double weight;    // prior probability, times the density of all features but the frequency
   bool fits;        // within the gates: of all features but the frequency, and of that once judged
   double probability = 0;
@@ -86,6 +85,7 @@ struct vpLedIdRecognizer::Candidate {
 struct vpLedIdRecognizer::Sight {
   bool readable = false;
   double frequency = 0; // Hz
+  double reach = 0;     // Hz, that the estimate may be off
   double unknown = 0;   // prior probability times density of a lamp that the map does not know
   std::vector<Candidate> candidates;
 
@@ -104,12 +104,11 @@ struct vpLedIdRecognizer::Sight {
     return sum;
   }
   //! Probabilities of the candidates, where row-time errors have these weights, which add up to 1.
-  void judge(const std::vector<double> &errors, const std::vector<double> &weights, double gate,
-             double boundGate);
+  void judge(const std::vector<double> &errors, const std::vector<double> &weights, double gate);
 };
 
 void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const std::vector<double> &weights,
-                                     double gate, double boundGate)
+                                     double gate)
 {
   double mean = 0, variance = 0;
   for (size_t k = 0; k < errors.size(); ++k) {
@@ -120,10 +119,8 @@ void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const st
   double sum = unknown;
   for (Candidate &candidate : candidates) {
     const double expected = candidate.frequency * (1 + mean);
-    const double common = candidate.frequency * std::sqrt(variance);
-    const double reach =
-        std::min(gate * std::hypot(candidate.sigma, common), boundGate * std::hypot(candidate.bound, common));
-    candidate.fits = candidate.fits && std::abs(frequency - expected) < reach;
+    const double clocks = std::hypot(candidate.clock, candidate.frequency * std::sqrt(variance));
+    candidate.fits = candidate.fits && std::abs(frequency - expected) < std::hypot(reach, gate * clocks);
     candidate.probability = 0;
     for (size_t k = 0; k < errors.size(); ++k) {
       candidate.probability += weights[k] * candidate.weight * density(candidate, errors[k]);
@@ -166,10 +163,8 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   Candidate candidate;
   candidate.identifier = index;
   candidate.frequency = sent.repetitionFrequency();
-  const double clock = 1e-6 * identifier.oscillatorPpm * candidate.frequency;
-  candidate.sigma = std::hypot(seen.frequencySigma, clock);
-  candidate.bound = std::isfinite(seen.frequencyBound) ? std::hypot(seen.frequencyBound, clock)
-                                                       : std::numeric_limits<double>::infinity();
+  candidate.clock = 1e-6 * identifier.oscillatorPpm * candidate.frequency;
+  candidate.sigma = std::hypot(seen.frequencySigma, candidate.clock);
   candidate.weight = (1 - unknownPrior) * static_cast<double>(identifier.lamps.size()) /
                      static_cast<double>(m_map.lamps.size());
   candidate.fits = true;
@@ -204,6 +199,10 @@ vpLedIdRecognizer::Sight vpLedIdRecognizer::sightOf(const vpLampObservation &lam
   }
   sight.readable = true;
   sight.frequency = seen.frequency;
+  sight.reach = gate * seen.frequencySigma;
+  if (std::isfinite(seen.frequencyBound)) {
+    sight.reach = std::min(sight.reach, boundGate * seen.frequencyBound);
+  }
   sight.unknown = unknownPrior * unknownDensity(seen);
   // All that may compete; an oscillator of the map may be as wide as the range of frequencies.
   for (size_t index : m_byFrequency) {
@@ -275,7 +274,7 @@ vpRowTimeError vpLedIdRecognizer::recognize(std::vector<vpLampObservation> &lamp
   for (size_t i = 0; i < lamps.size(); ++i) {
     std::vector<double> others = together;
     std::transform(others.begin(), others.end(), logs[i].begin(), others.begin(), std::minus<double>());
-    sights[i].judge(errors, normalised(std::move(others)), gate, boundGate);
+    sights[i].judge(errors, normalised(std::move(others)), gate);
     decide(lamps[i], sights[i]);
   }
   vpRowTimeError error;

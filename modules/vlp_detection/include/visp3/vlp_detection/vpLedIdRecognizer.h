@@ -35,7 +35,8 @@ struct VISP_EXPORT vpRowTimeError {
   An identifier that lies within `gate` standard deviations in frequency, and `shapeGate` in duty and phase
   difference, is a candidate. Near simple fractions of the rate of lines all edges may hide between exposures:
   the frequency is known the worse for it, and strangers fit that would show for what they are elsewhere. So
-  the gate grows no wider than `boundGate` times what edges anywhere leave (vpStripeFeatures::frequencyBound),
+  the gate grows no wider than `boundGate` times what edges anywhere leave (vpStripeFeatures::frequencyBound;
+  clocks and row time come on top),
   and what is known `maxSpread` times worse than that has no candidate. One that has at least `minConfidence`
   and a single lamp gives the id. What several lamps of one identifier leave open, or several candidates, is
   for geometry to decide: `candidates` hands them on.
@@ -44,7 +45,7 @@ class VISP_EXPORT vpLedIdRecognizer
 {
 public:
   double gate = 3.5;               // standard deviations, on the frequency
-  double boundGate = 2.3;          // times the bound, on the frequency
+  double boundGate = 2.1;          // times the bound, on what the estimate is off by
   double shapeGate = 4;            // standard deviations, on duty and phase difference
   double minConfidence = 0.99;     // probability below which no id is given
   double maxFrequencyDoubt = 0.03; // share of the frequency: less certain stripes are recognised as nothing
