@@ -35,11 +35,11 @@ struct VISP_EXPORT vpRowTimeError {
   An identifier that lies within `gate` standard deviations in frequency, and `shapeGate` in duty and phase
   difference, is a candidate. Near simple fractions of the rate of lines all edges may hide between exposures:
   the frequency is known the worse for it, and strangers fit that would show for what they are elsewhere. So
-  the gate grows no wider than `boundGate` times what edges anywhere leave (vpStripeFeatures::frequencyBound;
-  clocks and row time come on top),
-  and what is known `maxSpread` times worse than that has no candidate. One that has at least `minConfidence`
-  and a single lamp gives the id. What several lamps of one identifier leave open, or several candidates, is
-  for geometry to decide: `candidates` hands them on.
+  the gate on the estimate's error grows no wider than `boundGate` times what edges anywhere leave
+  (vpStripeFeatures::frequencyBound), and what is known `maxSpread` times worse than that has no candidate.
+
+  One that has at least `minConfidence` and a single lamp gives the id. What several lamps of one identifier
+  leave open, or several candidates, is for geometry to decide: `candidates` hands them on.
 */
 class VISP_EXPORT vpLedIdRecognizer
 {
