@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // False acceptance: how often what is no lamp of the map gets an id, while true lamps get theirs.
-// bench_acceptance [LAMPS] [true|strangers|steady]
+// bench_acceptance [LAMPS] [true|strangers|steady|all] [SEED]: other seeds make other maps and lamps
 
 #include <cstdio>
 #include <cstdlib>
@@ -27,9 +27,9 @@ struct Map {
 };
 
 //! PWM lamps at random frequencies, 12 Hz apart or more.
-vpLampMap lampsOf(int count, bool duties)
+vpLampMap lampsOf(int count, bool duties, unsigned int seed)
 {
-  std::mt19937_64 generator(static_cast<unsigned>(count));
+  std::mt19937_64 generator(static_cast<unsigned>(count) + 1000 * seed);
   std::uniform_real_distribution<double> uniform(0, 1);
   vpLampMap map;
   while (static_cast<int>(map.lamps.size()) < count) {
@@ -50,12 +50,12 @@ vpLampMap lampsOf(int count, bool duties)
   return map;
 }
 
-std::vector<Map> maps()
+std::vector<Map> maps(unsigned int seed)
 {
   std::vector<Map> all;
   for (bool duties : {true, false}) {
     for (int count : {4, 50, 200}) {
-      all.push_back({duties ? "stated" : "not stated", lampsOf(count, duties)});
+      all.push_back({duties ? "stated" : "not stated", lampsOf(count, duties, seed)});
     }
   }
   return all;
@@ -90,71 +90,82 @@ vpLampObservation seen(const vpModulation &modulation, vpSimulatedStripes stripe
   return lamp;
 }
 
-void trueLamps(const Map &map, int lamps)
+void trueLamps(const Map &map, int lamps, unsigned int seed)
 {
   const vpSimulatedStripes stripes;
   const vpLedIdRecognizer recognizer(map.map, shutterOf(stripes));
   std::mutex guard;
   int right = 0, wrong = 0;
-  vpRunTrials(lamps, [&](int trial, std::mt19937_64 &generator) {
-    const vpLamp &sent = map.map.lamps[static_cast<size_t>(trial) % map.map.lamps.size()];
-    vpModulation modulation = sent.modulation;
-    if (!modulation.duty) {
-      modulation.duty = 0.2 + 0.6 * std::uniform_real_distribution<double>(0, 1)(generator);
-    }
-    vpLampObservation lamp = seen(modulation, stripes, generator);
-    recognizer.recognize(lamp);
-    const std::lock_guard<std::mutex> lock(guard);
-    right += lamp.id == sent.id;
-    wrong += !lamp.id.empty() && lamp.id != sent.id;
-  });
-  std::printf("%5zu lamps, duty %-10s %6d true lamps: %7.3f %% accepted, %d with another's id\n",
-              map.map.lamps.size(), map.duties, lamps, 100. * right / lamps, wrong);
+  std::vector<int> missed(map.map.lamps.size(), 0);
+  vpRunTrials(
+      lamps,
+      [&](int trial, std::mt19937_64 &generator) {
+        const vpLamp &sent = map.map.lamps[static_cast<size_t>(trial) % map.map.lamps.size()];
+        vpModulation modulation = sent.modulation;
+        if (!modulation.duty) {
+          modulation.duty = 0.2 + 0.6 * std::uniform_real_distribution<double>(0, 1)(generator);
+        }
+        vpLampObservation lamp = seen(modulation, stripes, generator);
+        recognizer.recognize(lamp);
+        const std::lock_guard<std::mutex> lock(guard);
+        right += lamp.id == sent.id;
+        wrong += !lamp.id.empty() && lamp.id != sent.id;
+        missed[static_cast<size_t>(trial) % missed.size()] += lamp.id != sent.id;
+      },
+      seed);
+  const auto most = std::max_element(missed.begin(), missed.end());
+  std::printf("%5zu lamps, duty %-10s %6d true lamps: %7.3f %% accepted, %d with another's id; most missed: "
+              "%d of %.0f Hz\n",
+              map.map.lamps.size(), map.duties, lamps, 100. * right / lamps, wrong, *most,
+              map.map.lamps[static_cast<size_t>(most - missed.begin())].modulation.frequency);
   std::fflush(stdout);
 }
 
 //! \param apart From every lamp of the map, combined standard deviations; 0: any frequency.
-void strangers(const Map &map, int lamps, double apart)
+void strangers(const Map &map, int lamps, double apart, unsigned int seed)
 {
   const vpSimulatedStripes stripes;
   const vpLedIdRecognizer recognizer(map.map, shutterOf(stripes));
   std::mutex guard;
   int accepted = 0, far = 0;
   double overlap = 0;
-  vpRunTrials(lamps, [&](int, std::mt19937_64 &generator) {
-    std::uniform_real_distribution<double> uniform(0, 1);
-    vpModulation modulation;
-    modulation.kind = vpModulation::Kind::pwm;
-    auto distance = [&] {
-      double least = 1e9;
-      for (const vpLamp &lamp : map.map.lamps) {
-        least = std::min(least, std::abs(lamp.modulation.frequency - modulation.frequency) /
-                                    combinedSigma(stripes, lamp.modulation.frequency));
-      }
-      return least;
-    };
-    do {
-      modulation.frequency = lowest + (highest - lowest) * uniform(generator);
-    } while (distance() < apart);
-    modulation.duty = 0.2 + 0.6 * uniform(generator);
-    vpLampObservation lamp = seen(modulation, stripes, generator);
-    recognizer.recognize(lamp);
-    const bool near = std::any_of(map.map.lamps.begin(), map.map.lamps.end(), [&](const vpLamp &other) {
-      return std::abs(other.modulation.frequency - modulation.frequency) <
-                 recognizer.boundGate * combinedSigma(stripes, other.modulation.frequency) &&
-             (!other.modulation.duty || std::abs(*other.modulation.duty - *modulation.duty) <
-                                            recognizer.shapeGate * recognizer.dutyError);
-    });
-    const std::lock_guard<std::mutex> lock(guard);
-    accepted += !lamp.id.empty();
-    overlap += near;
-    if (!lamp.id.empty()) {
-      const double f = map.map.find(lamp.id)->modulation.frequency;
-      const double own =
-          std::hypot(lamp.features.frequencySigma, rowTimeSigma * f, 1e-6 * stripes.oscillator * f);
-      far += std::abs(modulation.frequency - f) > 5 * own;
-    }
-  });
+  vpRunTrials(
+      lamps,
+      [&](int, std::mt19937_64 &generator) {
+        std::uniform_real_distribution<double> uniform(0, 1);
+        vpModulation modulation;
+        modulation.kind = vpModulation::Kind::pwm;
+        auto distance = [&] {
+          double least = 1e9;
+          for (const vpLamp &lamp : map.map.lamps) {
+            least = std::min(least, std::abs(lamp.modulation.frequency - modulation.frequency) /
+                                        combinedSigma(stripes, lamp.modulation.frequency));
+          }
+          return least;
+        };
+        do {
+          modulation.frequency = lowest + (highest - lowest) * uniform(generator);
+        } while (distance() < apart);
+        modulation.duty = 0.2 + 0.6 * uniform(generator);
+        vpLampObservation lamp = seen(modulation, stripes, generator);
+        recognizer.recognize(lamp);
+        const bool near = std::any_of(map.map.lamps.begin(), map.map.lamps.end(), [&](const vpLamp &other) {
+          return std::abs(other.modulation.frequency - modulation.frequency) <
+                     recognizer.boundGate * combinedSigma(stripes, other.modulation.frequency) &&
+                 (!other.modulation.duty || std::abs(*other.modulation.duty - *modulation.duty) <
+                                                recognizer.shapeGate * recognizer.dutyError);
+        });
+        const std::lock_guard<std::mutex> lock(guard);
+        accepted += !lamp.id.empty();
+        overlap += near;
+        if (!lamp.id.empty()) {
+          const double f = map.map.find(lamp.id)->modulation.frequency;
+          const double own =
+              std::hypot(lamp.features.frequencySigma, rowTimeSigma * f, 1e-6 * stripes.oscillator * f);
+          far += std::abs(modulation.frequency - f) > 5 * own;
+        }
+      },
+      seed);
   std::printf("%5zu lamps, duty %-10s %6d strangers %s: %d accepted", map.map.lamps.size(), map.duties, lamps,
               apart > 0 ? "more than 5 sigma off" : "of any frequency", accepted);
   if (apart > 0) {
@@ -305,16 +316,17 @@ int main(int argc, char **argv)
 {
   const int lamps = argc > 1 ? std::atoi(argv[1]) : 10000;
   const std::string part = argc > 2 ? argv[2] : "all";
-  const std::vector<Map> all = maps();
+  const unsigned int seed = argc > 3 ? static_cast<unsigned int>(std::atoi(argv[3])) : 0;
+  const std::vector<Map> all = maps(seed);
   if (part == "all" || part == "true") {
     for (const Map &map : all) {
-      trueLamps(map, lamps);
+      trueLamps(map, lamps, seed);
     }
   }
   if (part == "all" || part == "strangers") {
     for (double apart : {5., 0.}) {
       for (const Map &map : all) {
-        strangers(map, lamps, apart);
+        strangers(map, lamps, apart, seed);
       }
     }
   }

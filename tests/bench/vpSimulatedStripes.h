@@ -6,6 +6,7 @@
 #define vpSimulatedStripes_h
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <random>
 #include <string>
@@ -67,15 +68,17 @@ inline vpLampMap vpMapOf(const std::vector<vpModulation> &identifiers)
   return map;
 }
 
-//! Does \e count trials on all cores, each with a generator that its number seeds.
-inline void vpRunTrials(int count, const std::function<void(int trial, std::mt19937_64 &generator)> &trial)
+//! Does \e count trials on all cores, each with a generator that its number and \e seed seed.
+inline void vpRunTrials(int count, const std::function<void(int trial, std::mt19937_64 &generator)> &trial,
+                        unsigned int seed = 0)
 {
   const int workers = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<std::thread> threads;
   for (int worker = 0; worker < workers; ++worker) {
     threads.emplace_back([=, &trial] {
       for (int i = worker; i < count; i += workers) {
-        std::mt19937_64 generator(1000003u * static_cast<unsigned>(i) + 17u);
+        std::mt19937_64 generator((static_cast<uint64_t>(seed) << 32) + 1000003u * static_cast<unsigned>(i) +
+                                  17u);
         trial(i, generator);
       }
     });

@@ -109,7 +109,8 @@ TEST(StripeStatistics, FullSizeReachesTheBound)
     for (double stripes : {3., 8., 20., 44.}) {
       const Figures figures = figuresOf(146, 1, stripes, duty);
       expectWithin(figures, 1.3, 1.2, 4);
-      EXPECT_NEAR(figures.told, figures.bound, 0.25 * figures.bound); // it knows neither noise nor exposure
+      EXPECT_NEAR(figures.told, figures.bound,
+                  0.25 * figures.bound); // from its own fit, the model's error included
     }
 }
 

@@ -265,21 +265,22 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   features.stripes = static_cast<unsigned int>(peaks.size());
   features.modulation = depthOf(profile);
 
-  Start start(profile, peaks, *this);
-  if (start.candidates.empty() || start.candidates.front().gain < minSignificance ||
+  const Start byAll(profile, peaks, *this);
+  if (byAll.candidates.empty() || byAll.candidates.front().gain < minSignificance ||
       features.modulation < minModulation || profile.agreement < minAgreement) {
     return features;
   }
-  const Start byAll = start;
-  std::optional<vpWaveformFit> pwm = fitPwm(profile, start);
+  const Start *start = &byAll;
+  std::optional<Start> byWhole;
+  std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
   // A stripe at the lamp's end is dim because the lamp is, or because it is not whole.
   const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
   if (whole.size() < peaks.size()) {
-    Start byWhole(profile, whole, *this);
-    std::optional<vpWaveformFit> other = fitPwm(profile, byWhole);
+    byWhole.emplace(profile, whole, *this);
+    std::optional<vpWaveformFit> other = fitPwm(profile, *byWhole);
     if (other && (!pwm || other->cost() < pwm->cost())) {
       pwm = std::move(other);
-      start = std::move(byWhole);
+      start = &*byWhole;
     }
   }
   if (pwm) {
@@ -289,14 +290,14 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   // A second pulse explains a little of what blur and tone curve do to one, too.
   static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;
   if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
-    std::optional<vpWaveformFit> two = fitTwoPulse(profile, start);
+    std::optional<vpWaveformFit> two = fitTwoPulse(profile, *start);
     if (two && two->misfit() < maxMisfit &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
       two->integrate();
       take(features, *two, true);
     }
   }
-  widen(features, profile, start.pulses.has_value());
+  widen(features, profile, start->pulses.has_value());
   static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
   if (!(features.misfit < beyondDoubt)) {
     const std::optional<vpWordSearch::Found> word =

@@ -54,8 +54,7 @@ void vpWaveformFit::integrate()
   const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
   // A variance told from few residuals may be any.
   const double degrees = degreesOfFreedom();
-  const double inflation = std::max(1.0, together * m_chiSquare / degrees) * (1 + 6 / (degrees * degrees));
-  m_inflation = inflation;
+  m_inflation = std::max(1.0, together * m_chiSquare / degrees) * (1 + 6 / (degrees * degrees));
 
   // Where no line feels an edge, it lies within half the distance of two lines, about.
   Vector reach = Vector::Ones();
@@ -65,19 +64,19 @@ void vpWaveformFit::integrate()
                              std::abs(m_x(exposure) - m_profile->exposure));
   const Matrix wide = reach.cwiseAbs2().cwiseInverse().asDiagonal();
   static const double gap = 1.15; // exposures from line to line
-  Posterior posterior{m_x, (m_curvature / inflation + wide).inverse(), 0};
+  Posterior posterior{m_x, (m_curvature / m_inflation + wide).inverse(), 0};
   static const int few = 64, many = 128; // samples
   static const double good = 0.4;        // share of them that count
   if (m_line < gap * m_profile->exposure) {
-    posterior = sampled(posterior, few, inflation);
+    posterior = sampled(posterior, few, m_inflation);
   }
   if (posterior.effective < good) {
     // Not bell-shaped, and the minimum may lie at a wall of it: from a flattened posterior down to itself.
-    posterior = {m_x, (m_curvature / (32 * inflation) + wide).inverse(), 0};
+    posterior = {m_x, (m_curvature / (32 * m_inflation) + wide).inverse(), 0};
     for (double temperature : {32.0, 8.0, 3.0}) {
-      posterior = sampled(posterior, many, inflation * temperature);
+      posterior = sampled(posterior, many, m_inflation * temperature);
     }
-    posterior = sampled(posterior, 3 * many, inflation); // few of which count: it is the smaller one
+    posterior = sampled(posterior, 3 * many, m_inflation); // few of which count: it is the smaller one
   }
   m_x = posterior.mean;
   const double misplaced =
