@@ -4,6 +4,7 @@
  */
 #include "vpLocate.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -11,6 +12,7 @@
 
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_robot/vpOdometry.h>
 
 #include "common/vpInterrupt.h"
 #include "common/vpProgressBar.h"
@@ -33,6 +35,7 @@ public:
   explicit Locate(const vpLocateOptions &options)
       : m_options(options), m_rig(vpVlpRig::load(options.rigFile)),
         m_localizer(options.localizer(m_rig, vpLampMap::load(options.lampsFile))),
+        m_odometry(options.odometry.empty() ? std::vector<vpOdometry>() : vpReadOdometry(options.odometry)),
         m_source(options.openFrames()), m_outputs(options, [this] { return windowClosed(); })
   {
   }
@@ -79,6 +82,7 @@ private:
                             ", expected " + sizeText(m_rig.width, m_rig.height) + ", the size of camera " +
                             m_rig.cameraName + " in " + m_options.rigFile);
     }
+    followOdometry(frame.timestamp);
     const auto start = std::chrono::steady_clock::now();
     try {
       located.location = m_localizer.process(frame);
@@ -86,6 +90,20 @@ private:
       throw vpException(error.getCode(), frame.name + ": " + error.getStringMessage());
     }
     located.compute = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  //! Hands on what the base says up to when a frame's last line was read: by then it is known.
+  void followOdometry(double timestamp)
+  {
+    const vpLineTiming timing = m_rig.lineTiming();
+    const double read = timestamp + std::max(timing.middle(0), timing.middle(timing.lines() - 1));
+    for (; m_odometryUsed < m_odometry.size(); ++m_odometryUsed) {
+      m_localizer.filter.addOdometry(m_odometry[m_odometryUsed]);
+      if (m_odometry[m_odometryUsed].timestamp > read) {
+        ++m_odometryUsed;
+        break;
+      }
+    }
   }
 
   //! Gives the outputs their names and says what was done. \e stopped: why before the last frame, or empty.
@@ -132,6 +150,8 @@ private:
   vpLocateOptions m_options;
   vpVlpRig m_rig;
   vpVlpLocalizer m_localizer;
+  std::vector<vpOdometry> m_odometry;
+  size_t m_odometryUsed = 0;
   std::unique_ptr<vpFrameSource> m_source;
   vpLocateSummary m_summary;
   bool m_finished = false;

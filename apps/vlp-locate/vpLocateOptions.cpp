@@ -28,7 +28,7 @@ const char *const description =
 
 const char *const footer = R"(
 Examples:
-  vlp-locate --run recorded --poses poses.tum
+  vlp-locate --run recorded --odometry recorded/odometry.csv --poses poses.tum
   vlp-locate --rig rig.yaml --lamps lamps.yaml --images 'frames/%04d.png' --fixes fixes.csv --overlay look
   vlp-locate --rig rig.yaml --lamps lamps.yaml --image a.png b.jpg > poses.tum
 
@@ -37,8 +37,10 @@ Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
            alike, has no row. Written to stdout where no output is asked for.
   fixes    timestamp_s,x,y,z,roll,pitch,yaw,sigma_x,sigma_y,sigma_z,sigma_yaw,cov_xy,lamps,state,compute_s:
            a row for each frame read. Angles about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).
-           lamps: their ids, joined by ';'. state: fix; ambiguous (a second pose explains the frame as
-           well, this one is the likelier); none (no position, the fields of the pose are empty).
+           lamps: their ids, joined by ';'. state: tracking (the pose is carried from frame to frame, its
+           sigma below 20 mm and 0.05 rad); coasting (less certain, sigma below 100 mm: few lamps or none);
+           fix (of this frame alone); ambiguous (a second pose explains the frame as well, this one is the
+           likelier); none (no position, the fields of the pose are empty).
   seen     timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted,symbols:
            a row for each lamp-like region. u, v: the image of the lamp's middle. lamp_id is empty where
            it is no lamp of the map; accepted is 1 where it counts for the position. symbols: the chips of
@@ -99,7 +101,11 @@ bool vpLocateOptions::parse(int argc, char **argv)
       "mount (default): roll and pitch from the rig; free: all six estimated, from three lamps or more");
   vpAddChoice(app, "--solver", solver, {"all", "two"},
               "all (default): all lamps seen; two: the pair of best geometry, as in the paper");
-  app.add_flag("--no-track", "detect every frame afresh (today always so)");
+  vpAddName(app, "--odometry", odometry, "FILE",
+            "what the wheels or a gyro say of the motion: timestamp_s,v_m_s,w_rad_s, on the frames' clock");
+  app.add_flag("--no-track", noTrack,
+               "each frame by itself; so it is with --image, whose pictures need be no sequence, and with "
+               "--solver two");
   vpAddName(app, "--poses", poses, "FILE", "write the poses as a TUM trajectory");
   vpAddName(app, "--fixes", fixes, "FILE", "write the poses with their doubt as CSV");
   vpAddName(app, "--seen", seen, "FILE", "write what was seen in each frame as CSV");
@@ -109,6 +115,7 @@ bool vpLocateOptions::parse(int argc, char **argv)
     return false;
   }
 
+  noTrack = noTrack || !files.empty() || solver == "two";
   freeAttitude = attitude == "free";
   twoLamps = solver == "two";
   if (!run.empty()) {
@@ -141,6 +148,10 @@ void vpLocateOptions::check() const
       {"--rig", rigFile}, {"--lamps", lampsFile}, {"--run", frames}, {"--video", video}};
   for (const std::string &file : files) {
     inputs.emplace_back("--image", file);
+  }
+  inputs.emplace_back("--odometry", odometry);
+  if (!odometry.empty() && noTrack) {
+    fail("--odometry: " + odometry + " with frames that are located each by itself, expected a sequence");
   }
   refuseClashes(inputs, {{"--poses", poses}, {"--fixes", fixes}, {"--seen", seen}});
 }
@@ -179,6 +190,7 @@ vpVlpLocalizer vpLocateOptions::localizer(const vpVlpRig &rig, const vpLampMap &
          std::to_string(needed) + " or more for a position");
   }
   vpVlpLocalizer localizer(rig, map);
+  localizer.tracking = !noTrack;
   localizer.solver = twoLamps ? vpVlpLocalizer::Solver::two : vpVlpLocalizer::Solver::all;
   localizer.manyLamps.attitude =
       freeAttitude ? vpManyLampSolver::Attitude::free : vpManyLampSolver::Attitude::mount;

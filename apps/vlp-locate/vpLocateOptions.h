@@ -24,6 +24,8 @@ struct vpLocateOptions {
   std::string pattern;            // of numbered pictures
   std::vector<std::string> files; // pictures
   std::string video;
+  std::string odometry; // of the robot, a file
+  bool noTrack = false; // each frame by itself
   bool freeAttitude = false;
   bool twoLamps = false; // the paper's solver
   std::string poses;     // outputs

@@ -73,6 +73,20 @@ std::string overlayName(const vpLocatedFrame &located)
          fs::path(located.frame.name).stem().string().substr(0, longest) + ".png";
 }
 
+std::string stateOf(const vpVlpLocation &location)
+{
+  if (!location.fix.valid) {
+    return "none";
+  }
+  if (location.fix.ambiguous) {
+    return "ambiguous";
+  }
+  if (!location.tracked) {
+    return "fix";
+  }
+  return location.state == vpVlpFilter::State::tracking ? "tracking" : "coasting";
+}
+
 //! TUM has no place for a second pose: where one explains the frame as well, the reader gets none.
 bool isSure(const vpVlpFix &fix)
 {
@@ -151,7 +165,7 @@ void vpLocateOutputs::writeFix(const vpLocatedFrame &located)
       fields[12] += (fields[12].empty() ? "" : ";") + id;
     }
   }
-  fields[13] = !fix.valid ? "none" : (fix.ambiguous ? "ambiguous" : "fix");
+  fields[13] = stateOf(located.location);
   fields[14] = vpNumberText(located.compute);
   m_fixes->stream() << listed(fields) << "\n";
 }

@@ -23,7 +23,7 @@ run()
   [ -f "$out/$name/statistics.csv" ] && return
   frames=$(mktemp -d)
   "$bin/vlp-simulate" --scenario "data/scenarios/$scenario.yaml" --out "$frames/run" --format pgm "$@" 2>/dev/null
-  "$bin/vlp-locate" --run "$frames/run" --solver "$solver" --fixes "$frames/fixes.csv" 2>/dev/null
+  "$bin/vlp-locate" --run "$frames/run" --solver "$solver" --no-track --fixes "$frames/fixes.csv" 2>/dev/null
   "$bin/vlp-evaluate" --truth "$frames/run/truth.tum" --fixes "$frames/fixes.csv" --out "$out/$name" \
     --title "$name" >"$frames/table.txt" 2>/dev/null
   mv "$frames/table.txt" "$out/$name/table.txt"

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <visp3/core/vpException.h>
+#include <visp3/core/vpRect.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -27,6 +28,43 @@ vpLampOutline swapped(vpLampOutline outline)
   }
   std::swap(outline.centreCovariance(0, 0), outline.centreCovariance(1, 1));
   return outline;
+}
+
+//! Windows as lines and samples of the picture, clipped to it.
+std::vector<cv::Rect> linesOf(const std::vector<vpRect> &windows, const vpLinePicture &picture)
+{
+  std::vector<cv::Rect> rects;
+  for (const vpRect &window : windows) {
+    const int left = static_cast<int>(std::floor(window.getLeft())),
+              top = static_cast<int>(std::floor(window.getTop())),
+              right = static_cast<int>(std::ceil(window.getRight())),
+              bottom = static_cast<int>(std::ceil(window.getBottom()));
+    cv::Rect rect(left, top, right - left + 1, bottom - top + 1);
+    if (picture.transposed) {
+      std::swap(rect.x, rect.y);
+      std::swap(rect.width, rect.height);
+    }
+    rect &= cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
+    if (rect.area() > 0) {
+      rects.push_back(rect);
+    }
+  }
+  return rects;
+}
+
+//! Rectangles that overlap, as one.
+std::vector<cv::Rect> joined(std::vector<cv::Rect> rects)
+{
+  for (size_t i = 0; i < rects.size(); ++i) {
+    for (size_t k = i + 1; k < rects.size(); ++k) {
+      if ((rects[i] & rects[k]).area() > 0) {
+        rects[i] |= rects[k];
+        rects.erase(rects.begin() + static_cast<long>(k));
+        k = i; // the larger one may overlap others
+      }
+    }
+  }
+  return rects;
 }
 
 //! Both regions as one: on each line from the first to the last lit sample.
@@ -137,7 +175,7 @@ vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
   stripeAnalyzer.words = formatsOf(map, rig.shutter);
 }
 
-bool vpLedDetector::detect(const vpImage<unsigned char> &I)
+vpLinePicture vpLedDetector::pictureOf(const vpImage<unsigned char> &I) const
 {
   if (I.getWidth() != m_rig.width || I.getHeight() != m_rig.height) {
     std::ostringstream message;
@@ -145,9 +183,37 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I)
             << " x " << m_rig.height << " as the rig's camera says";
     throw vpException(vpException::dimensionError, message.str());
   }
-  const vpLinePicture picture(I, m_rig.shutter.alongColumns());
+  return vpLinePicture(I, m_rig.shutter.alongColumns());
+}
+
+bool vpLedDetector::detect(const vpImage<unsigned char> &I)
+{
+  const vpLinePicture picture = pictureOf(I);
+  return observe(picture, roiDetector.detect(picture.grey));
+}
+
+bool vpLedDetector::detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows)
+{
+  const vpLinePicture picture = pictureOf(I);
+  std::vector<vpLedRoi> rois;
+  for (const cv::Rect &window : joined(linesOf(windows, picture))) {
+    for (vpLedRoi &roi : roiDetector.detect(picture.grey, window)) {
+      // Windows that grow may see one lamp twice.
+      const bool twice = std::any_of(rois.begin(), rois.end(), [&roi](const vpLedRoi &other) {
+        return 2 * (roi.box & other.box).area() > std::min(roi.box.area(), other.box.area());
+      });
+      if (!twice) {
+        rois.push_back(std::move(roi));
+      }
+    }
+  }
+  return observe(picture, std::move(rois));
+}
+
+//! All that follows from the regions.
+bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois)
+{
   m_observations.clear();
-  std::vector<vpLedRoi> rois = roiDetector.detect(picture.grey);
   for (const vpLedRoi &roi : rois) {
     m_observations.push_back(observe(picture, roi));
   }

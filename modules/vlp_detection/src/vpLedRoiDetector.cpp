@@ -270,6 +270,37 @@ std::vector<vpLedRoi> sifted(const std::vector<Group> &groups)
   return rois;
 }
 
+//! Moves a region found in a window to its place in the picture.
+void moveTo(vpLedRoi &roi, const cv::Point &origin, const cv::Size &picture)
+{
+  roi.box += origin;
+  for (vpLedChord &chord : roi.chords) {
+    chord.line += origin.y;
+    chord.first += origin.x;
+    chord.last += origin.x;
+  }
+  roi.cutAcross = roi.box.x <= 0 || roi.box.br().x >= picture.width;
+  roi.cutAlong =
+      roi.box.y <= 0 || roi.box.br().y >= picture.height || vpChordShape::mayGoOn(roi, picture);
+}
+
+//! Larger by as much as the regions that its sides may cut, on these sides. Itself where there are none.
+cv::Rect grownAround(const cv::Rect &window, const std::vector<vpLedRoi> &rois, const cv::Rect &picture)
+{
+  cv::Rect grown = window;
+  for (const vpLedRoi &roi : rois) {
+    // A dark stripe may part a lamp from the rest that lies beyond the window.
+    const int gap = 1 + roi.box.width / 2;
+    const bool cut = roi.box.x <= window.x || roi.box.br().x >= window.br().x || roi.box.y <= window.y + gap ||
+                     roi.box.br().y >= window.br().y - gap;
+    const int side = std::max(roi.box.width, roi.box.height);
+    if (cut) {
+      grown |= cv::Rect(roi.box.x - side, roi.box.y - side, roi.box.width + 2 * side, roi.box.height + 2 * side);
+    }
+  }
+  return grown & picture;
+}
+
 } // namespace
 
 vpLinePicture::vpLinePicture(const vpImage<unsigned char> &I, bool alongColumns) : transposed(alongColumns)
@@ -337,6 +368,27 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
   std::vector<vpLedRoi> rois = sifted(large);
   for (vpLedRoi &roi : rois) {
     roi.cutAlong = roi.cutAlong || vpChordShape::mayGoOn(roi, lines.size());
+  }
+  return rois;
+}
+
+std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines,
+                                               const cv::Rect &window) const
+{
+  static const int mostRounds = 3;
+  const cv::Rect picture(0, 0, lines.cols, lines.rows);
+  cv::Rect looked = window & picture;
+  std::vector<vpLedRoi> rois;
+  for (int round = 0; round < mostRounds && looked.area() > 0; ++round) {
+    rois = detect(lines(looked));
+    for (vpLedRoi &roi : rois) {
+      moveTo(roi, looked.tl(), picture.size());
+    }
+    const cv::Rect grown = grownAround(looked, rois, picture);
+    if (grown == looked) {
+      break;
+    }
+    looked = grown;
   }
   return rois;
 }

@@ -42,7 +42,7 @@ vpFixStatistics statisticsOf(const vpFixLog &log, const vpTrajectory &truth,
   for (const vpLoggedFix &fix : log.fixes) {
     compute.push_back(fix.compute);
     statistics.ambiguous += fix.state == vpLoggedFix::State::ambiguous ? 1 : 0;
-    if (fix.state != vpLoggedFix::State::fix || settings.alignment != vpAlignment::none) {
+    if (!fix.hasPosition() || settings.alignment != vpAlignment::none) {
       continue;
     }
     if (const auto wMb = truth.at(fix.timestamp, settings.longestGap)) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <visp3/vlp_core/vpCsvTable.h>
 #include <visp3/vlp_core/vpNumberText.h>
@@ -43,12 +44,17 @@ double sigmaOf(const vpCsvTable &table, size_t row, size_t column)
 
 vpLoggedFix::State stateOf(const vpCsvTable &table, size_t row)
 {
-  const std::string &text = table.text(row, state);
-  if (text != "fix" && text != "ambiguous" && text != "none") {
-    table.fail(row, state, "expected fix, ambiguous or none");
+  using State = vpLoggedFix::State;
+  static const std::map<std::string, State> states = {{"fix", State::fix},
+                                                      {"tracking", State::tracking},
+                                                      {"coasting", State::coasting},
+                                                      {"ambiguous", State::ambiguous},
+                                                      {"none", State::none}};
+  const auto found = states.find(table.text(row, state));
+  if (found == states.end()) {
+    table.fail(row, state, "expected fix, tracking, coasting, ambiguous or none");
   }
-  return text == "fix" ? vpLoggedFix::State::fix
-                       : (text == "none" ? vpLoggedFix::State::none : vpLoggedFix::State::ambiguous);
+  return found->second;
 }
 
 void readPose(const vpCsvTable &table, size_t row, vpLoggedFix &fix)
@@ -113,7 +119,7 @@ vpFixLog vpFixLog::load(const std::string &filename)
 size_t vpFixLog::count() const
 {
   return static_cast<size_t>(std::count_if(fixes.begin(), fixes.end(), [](const vpLoggedFix &fix) {
-    return fix.state == vpLoggedFix::State::fix;
+    return fix.hasPosition();
   }));
 }
 
@@ -121,7 +127,7 @@ vpTrajectory vpFixLog::trajectory() const
 {
   vpTrajectory trajectory;
   for (const vpLoggedFix &fix : fixes) {
-    if (fix.state == vpLoggedFix::State::fix) {
+    if (fix.hasPosition()) {
       trajectory.add(fix.timestamp, fix.wMb);
     }
   }

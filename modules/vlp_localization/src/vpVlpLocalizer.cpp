@@ -9,21 +9,31 @@
 
 #include "vpLampConsensus.h"
 #include "vpLampNames.h"
+#include "vpLampTrust.h"
 
 BEGIN_VISP_NAMESPACE
 
 vpVlpLocalizer::vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map)
-    : detector(rig, map), matcher(rig, map), m_rig(rig), m_map(map)
+    : detector(rig, map), matcher(rig, map), filter(rig), m_rig(rig), m_map(map),
+      m_lineTime(rig.lineTiming().meanLineTime()),
+      m_trust(std::make_unique<vpLampTrust>())
 {
   for (size_t i = 0; i < map.lamps.size(); ++i) {
     m_lampOf.emplace(map.lamps[i].id, i);
   }
 }
 
+vpVlpLocalizer::~vpVlpLocalizer() = default;
+vpVlpLocalizer::vpVlpLocalizer(vpVlpLocalizer &&) noexcept = default;
+
 vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
 {
   vpVlpLocation location;
   location.timestamp = frame.timestamp;
+  if (tracking && !inOrder(frame.timestamp)) {
+    location.fix.refusal = "the frame is not later than the one before it";
+    return location;
+  }
 
   // Sections 2.1.1 and 2.1.2: LED-ROI, outline, stripe features and LED-ID of every lamp-like region.
   detector.detect(frame.I);
@@ -39,22 +49,170 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
     doubt = match.refusal;
   }
 
-  // Section 2.1.3: the pose from the rays to these lamps, two of them or all that agree with each other.
-  const vpLampConsensus consensus(lampsOf(location.observations), m_rig, location.observations, mapTolerance,
-                                  outlierLikelihood);
-  location.fix = consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
-    return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
-  });
-  if (usable.size() < 2 && !doubt.empty()) {
+  // Section 2.1.3: the pose from the rays to these lamps: each corrects the one that the filter carries, or, at
+  // first, two or all that agree with each other.
+  if (tracking && filter.started()) {
+    follow(location, usable);
+  } else {
+    location.fix = solve(location.observations, usable);
+    if (tracking && location.fix.valid && !location.fix.ambiguous) {
+      begin(location);
+    }
+  }
+  if (!location.fix.valid && usable.size() < 2 && !doubt.empty()) {
     location.fix.refusal = doubt;
   }
-
-  // Who counted, and why the others did not.
-  vpLampConsensus::explain(location.fix, usable, location.observations);
   if (location.fix.valid && !location.fix.ambiguous) {
     m_lastPose = {location.fix.wMb, frame.timestamp};
   }
+  location.tracked = tracking && location.fix.valid && !location.fix.ambiguous;
+  location.state = filter.state(location.fix);
   return location;
+}
+
+//! Whether a frame may follow the last one. Where the clock was set back, all begins anew.
+bool vpVlpLocalizer::inOrder(double time)
+{
+  static const double setBack = 1; // s
+  if (m_lastFrame && time <= *m_lastFrame && time > *m_lastFrame - setBack) {
+    return false;
+  }
+  if (m_lastFrame && time <= *m_lastFrame) {
+    filter.stop();
+    m_lastPose.reset();
+  }
+  m_lastFrame = time;
+  return true;
+}
+
+//! The pose of these lamps alone, of two of them or of all that agree with each other.
+vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const
+{
+  const vpLampConsensus consensus(lampsOf(observations), m_rig, observations, mapTolerance, outlierLikelihood);
+  const vpVlpFix fix = consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
+    return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
+  });
+  vpLampConsensus::explain(fix, usable, observations);
+  return fix;
+}
+
+//! Starts the filter at the location's pose, with the lamps that it rests on.
+void vpVlpLocalizer::begin(vpVlpLocation &location)
+{
+  filter.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
+  filter.start(location.fix.wMb, location.timestamp);
+  *m_trust = vpLampTrust();
+  m_trust->mapTolerance = mapTolerance;
+  m_disagreements = 0;
+  std::vector<size_t> members;
+  for (size_t i = 0; i < location.observations.size(); ++i) {
+    if (location.observations[i].accepted) {
+      members.push_back(i);
+    }
+  }
+  location.fix = correct(location, members);
+}
+
+/*!
+  The pose that the filter carries, corrected. A robot that starts, stops or turns faster than expected shows
+  lamps elsewhere: its velocity is then anybody's guess. One that was carried away shows lamps that agree with
+  each other on another place.
+*/
+void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &usable)
+{
+  const vpVlpFilter before = filter;
+  const vpLampTrust trusted = *m_trust;
+  const std::vector<vpLampObservation> seen = location.observations;
+  auto accepted = [&location] {
+    return static_cast<size_t>(std::count_if(location.observations.begin(), location.observations.end(),
+                                             [](const vpLampObservation &lamp) { return lamp.accepted; }));
+  };
+  auto again = [&] {
+    filter = before;
+    *m_trust = trusted;
+    location.observations = seen;
+  };
+  location.fix = correct(location, usable);
+  if (accepted() == 0 || 2 * accepted() < usable.size() ||
+      !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
+    again();
+    filter.rouse();
+    location.fix = correct(location, usable);
+  }
+  if (2 * accepted() < usable.size()) {
+    again();
+    filter.rouse();
+    filter.forgetVelocity();
+    location.fix = correct(location, usable);
+  }
+  const bool few = 2 * accepted() < usable.size(), lost = filter.state(location.fix) == vpVlpFilter::State::lost;
+  m_disagreements = few ? m_disagreements : 0;
+  if (!few && !lost) {
+    return;
+  }
+  std::vector<vpLampObservation> apart = seen;
+  const vpVlpFix alone = solve(apart, usable);
+  m_disagreements += alone.valid ? 1 : 0;
+  static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
+  if (alone.valid && !alone.ambiguous && (lost || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
+    location.observations = apart;
+    location.fix = alone;
+    begin(location);
+  } else if (lost) {
+    filter.stop();
+    location.fix = alone;
+    location.observations = apart;
+  } else if (alone.valid) {
+    location.fix = vpVlpFix();
+    location.fix.refusal = "the lamps agree with each other, and not with the robot's motion";
+  }
+}
+
+//! Predicts to the frame and lets each lamp correct at the time of its line.
+vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> &usable)
+{
+  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
+  std::vector<size_t> inTime = usable;
+  std::sort(inTime.begin(), inTime.end(), [&location](size_t a, size_t b) {
+    return location.observations[a].time < location.observations[b].time;
+  });
+  vpVlpFix fix;
+  filter.mark(location.timestamp);
+  for (size_t i : inTime) {
+    vpLampObservation &seen = location.observations[i];
+    const vpLamp *lamp = lamps[i];
+    if (lamp == nullptr) {
+      continue;
+    }
+    filter.advance(location.timestamp + (compensateShutter ? seen.time : 0));
+    vpLampSight sight = vpLampSight::from(*lamp, seen, m_rig.camera);
+    const Eigen::Vector2d offset = m_trust->offset(*lamp);
+    sight.covariance += offset * offset.transpose();
+    const vpVlpFilter::Innovation innovation = filter.innovation(sight);
+    const Eigen::Vector2d extent = 
+        vpLampTrust::extentOf(*lamp, filter.now().wMb, filter.velocity(), m_rig, m_lineTime);
+    const std::string doubt = innovation.inFront ? m_trust->doubt(*lamp, seen, innovation, extent)
+                                                 : std::string("behind the camera, by the robot's motion");
+    if (!doubt.empty()) {
+      m_trust->doubted(*lamp);
+      seen.remark = doubt;
+      continue;
+    }
+    m_trust->believe(*lamp, seen, innovation, extent);
+    filter.update(sight);
+    seen.accepted = true;
+    seen.remark.clear();
+    fix.lamps.push_back(lamp->id);
+    fix.residuals.push_back(innovation.ray);
+    fix.chiSquare += innovation.distance(0);
+    fix.degreesOfFreedom += 2;
+  }
+  const vpVlpFix marked = filter.marked();
+  fix.valid = marked.valid;
+  fix.wMb = marked.wMb;
+  fix.wMc = marked.wMc;
+  fix.covariance = marked.covariance;
+  return fix;
 }
 
 std::vector<const vpLamp *> vpVlpLocalizer::lampsOf(const std::vector<vpLampObservation> &observations) const

@@ -50,6 +50,12 @@ public:
   */
   bool detect(const vpImage<unsigned char> &I) override;
 
+  /*!
+    The same inside windows only, pixels; those that overlap are looked at as one. A lamp that a window cuts is
+    seen whole all the same, and so may be a neighbour.
+  */
+  bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows);
+
   //! Every lamp-like region of the last picture, the one with the largest lit area first.
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
@@ -57,6 +63,8 @@ public:
   const vpRowTimeError &rowTimeError() const { return m_rowTimeError; }
 
 private:
+  vpLinePicture pictureOf(const vpImage<unsigned char> &I) const;
+  bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
   bool joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
   vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi) const;
 

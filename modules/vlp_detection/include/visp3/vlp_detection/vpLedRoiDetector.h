@@ -69,6 +69,13 @@ public:
   double minContrast = 3;  // grey levels, lowest level above the background
 
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines) const;
+
+  /*!
+    The same of what lies inside \e window (x: samples, y: lines), clipped to the picture. Regions that touch a
+    side of it that is none of the picture's are looked at once more in a larger one. A region that lies mostly
+    outside the window may be left out.
+  */
+  std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window) const;
 };
 
 END_VISP_NAMESPACE

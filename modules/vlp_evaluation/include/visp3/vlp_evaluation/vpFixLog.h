@@ -19,8 +19,13 @@ struct VISP_EXPORT vpLoggedFix {
   enum class State {
     none,      //!< no position: no pose, no sigmas
     ambiguous, //!< a second pose explains the frame as well
-    fix
+    fix,       //!< of one frame alone
+    tracking,  //!< carried from frame to frame and corrected
+    coasting   //!< the same, uncertain: lamps are too few or hidden
   };
+
+  //! Whether there is a position that is the only one.
+  bool hasPosition() const { return state != State::none && state != State::ambiguous; }
 
   double timestamp = 0; // s
   State state = State::none;

@@ -5,6 +5,7 @@
 #ifndef vpVlpLocalizer_h
 #define vpVlpLocalizer_h
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -15,23 +16,34 @@
 #include <visp3/vlp_localization/vpLampMatcher.h>
 #include <visp3/vlp_localization/vpManyLampSolver.h>
 #include <visp3/vlp_localization/vpTwoLampSolver.h>
+#include <visp3/vlp_localization/vpVlpFilter.h>
 
 BEGIN_VISP_NAMESPACE
+
+class vpLampTrust;
 
 //! What one frame gave.
 struct VISP_EXPORT vpVlpLocation {
   double timestamp = 0;                        // s, of the frame
   vpVlpFix fix;                                // fix.valid false and fix.refusal where there is no position
+  bool tracked = false;                        // the filter's, not of this frame alone
+  vpVlpFilter::State state = vpVlpFilter::State::starting; // of fix, by its covariance
   std::vector<vpLampObservation> observations; // every lamp-like region, accepted where it counts for the fix
 };
 
 /*!
   The whole system: a frame goes in, a pose comes out. process() is the paper's section 2, top to bottom.
 
+  The first pose is that of two lamps or more in one frame. From there on the filter carries it: each lamp
+  corrects it at the time of its own line, one lamp alone as well, and where there is none it goes on as the
+  odometry says, or as fast as before. `tracking` off: each frame by itself.
+
   A map may use one identifier for several lamps, and a reflection shows the identifier of its lamp. Where a
-  picture holds such lamps, `matcher` tells by their places which lamp each is. The last pose serves it as a
-  hint and nothing else: pictures whose lamps are told apart by their stripes alone are located each by
-  itself.
+  picture holds such lamps, `matcher` tells by their places which lamp each is, the last pose being a hint.
+
+  Frames come in the order of their time. One that is not later than the frame before gives nothing, unless it
+  is earlier by more than a second: then the clock was set back, and all begins anew. After a gap, the
+  covariance tells whether the pose is lost.
 */
 class VISP_EXPORT vpVlpLocalizer
 {
@@ -41,11 +53,14 @@ public:
     two  //!< the paper's double-lamp solver on the pair of best geometry
   };
 
-  Solver solver = Solver::all;
+  bool tracking = true;
+  bool compensateShutter = true; // off: all lamps as if seen at the frame's time stamp
+  Solver solver = Solver::all;   // of single frames, and of the first pose
   vpLedDetector detector;
   vpManyLampSolver manyLamps; // its attitude: mount or free
   vpTwoLampSolver twoLamps;
   vpLampMatcher matcher; // under the mount's attitude, with a map tolerance of its own; free: does not run
+  vpVlpFilter filter;    // its odometry: addOdometry() before process()
   double mapTolerance = 0.03; // m, how far lamps may hang from where the map says before they disagree, sigma
   double outlierLikelihood = 1e-4; // lamps disagree where their residuals are less likely than this
 
@@ -55,6 +70,8 @@ public:
   double maxTurnRate = 3; // rad/s
 
   vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map);
+  ~vpVlpLocalizer();
+  vpVlpLocalizer(vpVlpLocalizer &&) noexcept;
 
   /*!
     \throw vpException (dimensionError) where the picture has not the size that the rig states. Whatever else
@@ -68,6 +85,12 @@ private:
     double time = 0; // s
   };
 
+  vpVlpFix solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const;
+  void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
+  vpVlpFix correct(vpVlpLocation &location, const std::vector<size_t> &usable);
+  void begin(vpVlpLocation &location);
+  bool inOrder(double time);
+
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
 
@@ -77,7 +100,11 @@ private:
   vpVlpRig m_rig;
   vpLampMap m_map;
   std::unordered_map<std::string, size_t> m_lampOf; // index into the map, by id
+  double m_lineTime = 0; // s, from line to line
   std::optional<LastPose> m_lastPose;
+  std::optional<double> m_lastFrame; // s
+  std::unique_ptr<vpLampTrust> m_trust;
+  int m_disagreements = 0; // frames in a row whose lamps agree with each other, and not with the filter
 };
 
 END_VISP_NAMESPACE

@@ -1,0 +1,185 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpVlpFilter_h
+#define vpVlpFilter_h
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include <visp3/vlp_core/vpVlpRig.h>
+#include <visp3/vlp_localization/vpVlpFix.h>
+#include <visp3/vlp_robot/vpOdometry.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  Extended Kalman filter of a robot that looks at lamps: each lamp's image point is a measurement of its own, at
+  the time of its own line, so that one lamp still corrects the pose and a rolling shutter bends nothing.
+
+  The state, with its covariance:
+  - the pose: x, y, z, yaw, and roll and pitch about x and y of b. The last two are constants of the rig, as
+    uncertain as its rotationSigma says (known where that is 0), unless the attitude is free;
+  - the velocity of the base along x and y of b and its turn rate, constant but for random accelerations;
+  - the odometry's errors: scales of speed and turn rate, bias of the turn rate;
+  - what the rig's mount and the map's lamps may be off by, where they state a standard deviation. These errors
+    are the same in every frame, which no averaging over frames takes away: as states they are estimated where
+    the motion shows them and keep the covariance honest where it does not (Schmidt 1966; Smith, Self and
+    Cheeseman 1990).
+
+  The measurement is that of the solvers: ray = projection of bRc^T (wRb^T (P - wtb) - btc).
+
+  Odometry is the velocity's mean over the interval of each sample: between samples the base moves on the arc
+  that they say, and accelerates at random where there is none.
+
+  \code
+  vpVlpFilter filter(rig);
+  filter.start(wMb, time);            // a first pose, as from vpManyLampSolver
+  filter.mark(time);                  // of a frame
+  filter.advance(time + lamp.time);   // its lamps in the order of time
+  filter.update(sight);
+  const vpVlpFix before = filter.marked(), now = filter.fixAt(time + 0.1);
+  \endcode
+*/
+class VISP_EXPORT vpVlpFilter
+{
+public:
+  //! Thresholds on the covariance, no more: whoever drives a robot decides by the covariance itself.
+  enum class State {
+    starting, //!< no pose yet
+    tracking, //!< the pose is as certain as trackingSigma and trackingYaw say
+    coasting, //!< less certain, yet more than lostSigma: a lamp or two, or none, for a while
+    lost      //!< less certain than lostSigma; a new start is needed
+  };
+
+  double trackingSigma = 0.02; // m, of x and of y
+  double trackingYaw = 0.05;   // rad
+  double lostSigma = 0.1;      // m
+
+  double acceleration = 0.5;         // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
+  double turnAcceleration = 4;       // rad/s^2/sqrt(Hz), likewise
+  double calmest = 0.001;            // share of both that is left of them where innovations are small for long
+  double drift = 0.0005;             // m/sqrt(s), of z: a floor is not quite flat
+  double tiltDrift = 0.05;           // rad/sqrt(s), of roll and pitch where the attitude is free
+  double startVelocity = 0.2;        // m/s, standard deviation at the start
+  double startTurnRate = 1.5;        // rad/s, likewise
+  double odometrySpeed = 0.002;      // m/s, standard deviation of a sample; encoders count ticks
+  double odometryShare = 0.01;       // likewise as a share of speed and turn rate: wheels slip now and then
+  double odometryTurnRate = 0.005;   // rad/s, likewise
+  double odometryScale = 0.02;       // standard deviation of the speed's scale: a slip that stays
+  double odometryTurnScale = 0.01;   // of the turn rate's scale
+  double odometryTurnBias = 0.002;   // rad/s, of the turn rate's bias
+  double sidewaysSpeed = 0.002;      // m/s, standard deviation of the speed sideways, where there is odometry
+  bool freeAttitude = false;         // roll and pitch change, and are as uncertain as the fix at the start
+
+  explicit vpVlpFilter(const vpVlpRig &rig);
+
+  /*!
+    Starts from a pose good enough to linearise about. Its covariance is not used: the lamps that it came from
+    are to follow as updates.
+  */
+  void start(const vpHomogeneousMatrix &wMb, double time);
+  void stop() { m_started = false; }
+  bool started() const { return m_started; }
+
+  /*!
+    To be given before advance() passes the interval that it closes; a sample that is not later than the one
+    before is left out. \throw vpException (badValue) where a value is not finite.
+  */
+  void addOdometry(const vpOdometry &sample);
+
+  //! Predicts up to \e time, s. Before time(): no more than a small step back, as for a line read earlier.
+  void advance(double time);
+  double time() const { return m_time; }
+
+  //! What a lamp's ray says, before it is believed.
+  struct Innovation {
+    bool inFront = false;                               // of the camera, else the rest means nothing
+    Eigen::Vector2d ray = Eigen::Vector2d::Zero();      // measured minus predicted, normalised units
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // as predicted, the measurement's own included
+    double depth = 0;                                   // m, of the lamp along the camera's axis
+    //! Mahalanobis distance squared, \e tolerance (m) added for how far lamps may hang from their place.
+    double distance(double tolerance) const;
+  };
+  Innovation innovation(const vpLampSight &lamp) const;
+
+  //! Corrects the state, its covariance in Joseph's form. \e lamp at time().
+  void update(const vpLampSight &lamp);
+
+  /*!
+    How restless the robot is, by the innovations of a frame: their Mahalanobis distances squared and degrees of
+    freedom in all. Where they are as small as expected random accelerations calm down; where they are not, they
+    rise again (covariance matching, Mehra 1972). \return False where they are beyond chance: the frame had
+    better be taken once more, after rouse().
+  */
+  bool settle(double chiSquare, int degreesOfFreedom);
+  //! The robot may start, stop or turn at any time.
+  void rouse() { m_unrest = 1; }
+
+  //! Makes the velocity as uncertain as at the start: the robot has changed its mind.
+  void forgetVelocity();
+
+  /*!
+    Predicts up to \e time and keeps the pose of then as a part of the state: what follows corrects it, too
+    (stochastic cloning, Roumeliotis and Burdick 2002). So a frame's pose is that at its time stamp, though its
+    lamps were seen later.
+  */
+  void mark(double time);
+  vpVlpFix marked() const;
+
+  //! The pose at time().
+  vpVlpFix now() const { return fixOf(x); }
+  //! The pose at any time: as predicted from time(), along the odometry as far as it is known, and by a robot
+  //! that may start and stop from there on.
+  vpVlpFix fixAt(double time) const;
+  State state(const vpVlpFix &fix) const;
+
+  //! Along x and y of b (m/s), and the turn rate (rad/s).
+  Eigen::Vector3d velocity() const { return m_x.segment<3>(vx); }
+
+private:
+  enum Index {
+    x,
+    y,
+    z,
+    yaw,
+    roll,
+    pitch,
+    vx,
+    vy,
+    w,
+    speedScale,
+    turnScale,
+    turnBias,
+    mount,            // translation in b, m; heading about z of b
+    mark0 = mount + 4, // x to pitch, at the mark
+    lamps = mark0 + 6
+  };
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+
+  struct Predicted;
+  Predicted predict(const vpLampSight &lamp) const;
+  Eigen::Index lampIndex(const vpLampSight &lamp) const;
+  void addLamp(const vpLampSight &lamp);
+  vpVlpFix fixOf(Index first) const;
+  void measure(const Matrix &H, const Vector &innovation, const Matrix &R);
+  void move(double dt, bool accelerates);
+  void followOdometry(const vpOdometry &sample, double dt);
+
+  vpVlpRig m_rig;
+  bool m_started = false;
+  double m_time = 0; // s
+  Vector m_x;
+  Matrix m_P;
+  std::vector<std::string> m_lamps; // ids whose errors are states, in their order
+  std::deque<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
+  double m_unrest = 1;               // share of the random accelerations
+  double m_followed = -1e300; // s, end of the interval whose odometry the velocity is
+};
+
+END_VISP_NAMESPACE
+
+#endif

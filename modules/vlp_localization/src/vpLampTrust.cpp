@@ -1,0 +1,140 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpLampTrust.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <visp3/core/vpMeterPixelConversion.h>
+#include <visp3/core/vpRotationMatrix.h>
+#include <visp3/core/vpRzyxVector.h>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const int known = 3;       // frames after which a lamp's place and size are its own
+const double memory = 0.03; // share of the latest frame in a running mean: slower than people walk
+const int patience = 60;   // frames in a row that it takes to believe that a lamp has become smaller
+
+//! False where it is not in front of the camera.
+bool pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &cMw, const vpVlpRig &rig, Eigen::Vector2d &p)
+{
+  Eigen::Vector3d c;
+  for (unsigned int i = 0; i < 3; ++i) {
+    c(i) = cMw[i][0] * place.x() + cMw[i][1] * place.y() + cMw[i][2] * place.z() + cMw[i][3];
+  }
+  if (!(c.z() > 1e-3)) {
+    return false;
+  }
+  vpMeterPixelConversion::convertPoint(rig.camera, c.x() / c.z(), c.y() / c.z(), p.x(), p.y());
+  return true;
+}
+
+Eigen::Vector2d seenExtent(const vpLampOutline &outline)
+{
+  const Eigen::Vector4d box = outline.box();
+  return {box(2) - box(0), box(3) - box(1)};
+}
+} // namespace
+
+Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMatrix &wMb,
+                                      const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime)
+{
+  const double half = 0.5 * (std::isfinite(lamp.size) ? lamp.size : 1);
+  const vpHomogeneousMatrix cMw = (wMb * rig.bMc).inverse();
+  static const int points = 24;
+  const bool disk = lamp.shape == vpLamp::Shape::disk;
+  Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9), p;
+  for (int k = 0; k < (disk ? points : 4); ++k) {
+    const double angle = disk ? 2 * M_PI * k / points : lamp.yaw + M_PI * (2 * k + 1) / 4;
+    const double reach = disk ? half : std::sqrt(2) * half;
+    const Eigen::Vector3d rim = lamp.position + reach * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+    if (!pixelOf(rim, cMw, rig, p)) {
+      return Eigen::Vector2d::Zero();
+    }
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  Eigen::Vector2d extent = most - least;
+  if (disk) {
+    extent /= std::cos(0.5 * M_PI / points); // a polygon's falls short of its circle's
+  }
+  static const double moment = 1e-3; // s
+  const vpHomogeneousMatrix later =
+      wMb * vpHomogeneousMatrix(vpTranslationVector(velocity.x() * moment, velocity.y() * moment, 0),
+                                vpRotationMatrix(vpRzyxVector(velocity.z() * moment, 0, 0)));
+  Eigen::Vector2d middle;
+  if (pixelOf(lamp.position, cMw, rig, middle) &&
+      pixelOf(lamp.position, (later * rig.bMc).inverse(), rig, p)) {
+    const int along = rig.shutter.alongColumns() ? 0 : 1;
+    const double ahead = (p(along) - middle(along)) / moment * lineTime; // px of its way from line to line
+    extent(along) /= std::max(0.1, 1 - ahead);
+  }
+  return extent;
+}
+
+std::string vpLampTrust::doubt(const vpLamp &lamp, const vpLampObservation &seen,
+                               const vpVlpFilter::Innovation &innovation,
+                               const Eigen::Vector2d &expectedExtent) const
+{
+  static const char *const elsewhere = "not where the robot's motion has it";
+  static const char *const smaller = "smaller than it was: partly hidden";
+  const auto found = m_past.find(lamp.id);
+  const bool before = found != m_past.end() && found->second.frames >= known;
+  vpVlpFilter::Innovation moved = innovation;
+  moved.ray -= before ? found->second.offset : Eigen::Vector2d(0, 0);
+  if (moved.distance(before ? placeTolerance : mapTolerance) > gate * gate) {
+    return elsewhere;
+  }
+  if (before && !seen.cut && expectedExtent.minCoeff() > 0 && found->second.doubts < patience) {
+    const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expectedExtent);
+    static const double coarse = 0.15; // px
+    const Eigen::Vector2d least =
+        found->second.size * (1 - sizeTolerance) - coarse * expectedExtent.cwiseInverse();
+    if ((size.array() < least.array()).any()) {
+      return smaller;
+    }
+  }
+  return "";
+}
+
+Eigen::Vector2d vpLampTrust::offset(const vpLamp &lamp) const
+{
+  const auto found = m_past.find(lamp.id);
+  if (found == m_past.end() || found->second.frames < known) {
+    return Eigen::Vector2d::Zero();
+  }
+  const Past &past = found->second;
+  static const double chance = 13.8; // chi-square of two, 1 in 1000
+  return past.offset.dot(past.doubt.inverse() * past.offset) > chance ? past.offset : Eigen::Vector2d(0, 0);
+}
+
+void vpLampTrust::believe(const vpLamp &lamp, const vpLampObservation &seen,
+                          const vpVlpFilter::Innovation &innovation, const Eigen::Vector2d &expectedExtent)
+{
+  Past &past = m_past[lamp.id];
+  ++past.frames;
+  past.doubts = 0;
+  const double share = std::max(memory, 1.0 / past.frames);
+  past.offset += share * (innovation.ray - past.offset);
+  past.doubt = (1 - share) * (1 - share) * past.doubt + share * share * innovation.covariance;
+  if (!seen.cut && expectedExtent.minCoeff() > 0) {
+    const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expectedExtent);
+    if (past.size.isZero()) {
+      past.size = size;
+    } else {
+      past.size += share * (size - past.size);
+    }
+  }
+}
+
+void vpLampTrust::doubted(const vpLamp &lamp)
+{
+  ++m_past[lamp.id].doubts;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,61 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLampTrust_h
+#define vpLampTrust_h
+
+#include <string>
+#include <unordered_map>
+
+#include <visp3/vlp_core/vpVlpRig.h>
+#include <visp3/vlp_localization/vpVlpFilter.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  Whether a lamp looks as it did in the frames before, from where the filter expects the robot: in its place, and
+  as large. One that somebody begins to hide drags its outline along, a little more in each frame, and no
+  Mahalanobis distance of one frame shows it; but it looks smaller.
+*/
+class vpLampTrust
+{
+public:
+  double mapTolerance = 0.03; // m, how far a lamp that was not seen before may hang from where the map says, sigma
+  double placeTolerance = 0.002; // m, how far one may then seem to move, sigma
+  double sizeTolerance = 0.015;  // share of its extent by which a lamp may seem smaller than it was
+  double gate = 4;               // standard deviations
+
+  //! Why not, in a few words; empty where it is to be believed.
+  std::string doubt(const vpLamp &lamp, const vpLampObservation &seen, const vpVlpFilter::Innovation &innovation,
+                    const Eigen::Vector2d &expectedExtent) const;
+
+  //! What it is off by on average, where that is more than chance, normalised units: to be added to its doubt.
+  Eigen::Vector2d offset(const vpLamp &lamp) const;
+
+  void believe(const vpLamp &lamp, const vpLampObservation &seen, const vpVlpFilter::Innovation &innovation,
+               const Eigen::Vector2d &expectedExtent);
+  void doubted(const vpLamp &lamp);
+
+  /*!
+    Width and height, px, of the picture of a lamp's disc or square as seen from \e wMb by a base that moves at
+    \e velocity (m/s along x and y of b, rad/s): lines read while the lamp's picture runs ahead of the readout
+    see it longer.
+  */
+  static Eigen::Vector2d extentOf(const vpLamp &lamp, const vpHomogeneousMatrix &wMb,
+                                  const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime);
+
+private:
+  struct Past {
+    int frames = 0;
+    int doubts = 0;                                    // frames in a row
+    Eigen::Vector2d offset = Eigen::Vector2d::Zero();  // normalised units, running mean of the innovations
+    Eigen::Matrix2d doubt = Eigen::Matrix2d::Zero();   // of that mean, were it 0
+    Eigen::Vector2d size = Eigen::Vector2d::Zero();    // extent over the expected one
+  };
+  std::unordered_map<std::string, Past> m_past; // by id
+};
+
+END_VISP_NAMESPACE
+
+#endif

@@ -1,0 +1,374 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_localization/vpVlpFilter.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+#include "vpLampGeometry.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+double square(double x)
+{
+  return x * x;
+}
+
+//! Where the base stands that leans by roll and pitch and heads along yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
+vpBasePose poseOf(const Eigen::VectorXd &state)
+{
+  vpBasePose pose;
+  pose.wtb = state.head<3>();
+  pose.wRb = (Eigen::AngleAxisd(state(3), Eigen::Vector3d::UnitZ()) *
+              Eigen::AngleAxisd(state(5), Eigen::Vector3d::UnitY()) *
+              Eigen::AngleAxisd(state(4), Eigen::Vector3d::UnitX()))
+                 .toRotationMatrix();
+  return pose;
+}
+
+//! Rotations about the fixed axes of w by changes of yaw, roll and pitch, in the state's order.
+Eigen::Matrix3d rotationByAngles(const Eigen::VectorXd &state)
+{
+  const Eigen::AngleAxisd heading(state(3), Eigen::Vector3d::UnitZ()),
+      leaning(state(5), Eigen::Vector3d::UnitY());
+  Eigen::Matrix3d axes;
+  axes.col(0) = Eigen::Vector3d::UnitZ();
+  axes.col(1) = heading * (leaning * Eigen::Vector3d::UnitX());
+  axes.col(2) = heading * Eigen::Vector3d::UnitY();
+  return axes;
+}
+} // namespace
+
+//! A lamp's ray and its derivative by the state.
+struct vpVlpFilter::Predicted {
+  bool inFront = false;
+  double depth = 0;
+  Eigen::Vector2d ray = Eigen::Vector2d::Zero();
+  Matrix H;
+  Eigen::Matrix2d ownDoubt = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
+};
+
+double vpVlpFilter::Innovation::distance(double tolerance) const
+{
+  const Eigen::Matrix2d S = covariance + square(tolerance / depth) * Eigen::Matrix2d::Identity();
+  return ray.dot(S.inverse() * ray);
+}
+
+vpVlpFilter::vpVlpFilter(const vpVlpRig &rig) : m_rig(rig) {}
+
+void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
+{
+  // Wide, yet linear: the lamps of the pose follow.
+  static const double place = 0.3, turn = 0.3; // m, rad
+  const vpBasePose pose = vpBasePose::of(wMb);
+  m_started = true;
+  m_time = time;
+  m_lamps.clear();
+  m_x = Vector::Zero(lamps);
+  m_x.head<3>() = pose.wtb;
+  m_x(yaw) = std::atan2(pose.wRb(1, 0), pose.wRb(0, 0));
+  m_x(roll) = freeAttitude ? std::atan2(pose.wRb(2, 1), pose.wRb(2, 2)) : 0;
+  m_x(pitch) = freeAttitude ? -std::asin(std::clamp(pose.wRb(2, 0), -1.0, 1.0)) : 0;
+  Vector sigma = Vector::Zero(lamps);
+  sigma.head<3>().setConstant(place);
+  sigma(yaw) = turn;
+  sigma.segment<2>(roll) =
+      freeAttitude ? Eigen::Vector2d(turn, turn) : Eigen::Vector2d(m_rig.rotationSigma.head<2>());
+  sigma(speedScale) = odometryScale;
+  sigma(turnScale) = odometryTurnScale;
+  sigma(turnBias) = odometryTurnBias;
+  sigma.segment<3>(mount) = m_rig.translationSigma;
+  sigma(mount + 3) = m_rig.rotationSigma.z();
+  m_P = sigma.cwiseAbs2().asDiagonal();
+  rouse();
+  forgetVelocity();
+}
+
+void vpVlpFilter::forgetVelocity()
+{
+  for (int i : {vx, vy, w}) {
+    m_P(i, i) += square(i == w ? startTurnRate : startVelocity);
+  }
+}
+
+bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
+{
+  static const double chance = 2, beyond = 6; // standard deviations of a chi-square
+  static const double calming = 0.8, rousing = 3;
+  const double excess = (chiSquare - degreesOfFreedom) / std::sqrt(2.0 * std::max(1, degreesOfFreedom));
+  m_unrest = std::clamp(m_unrest * (excess > chance ? rousing : calming), calmest, 1.0);
+  return excess < beyond;
+}
+
+void vpVlpFilter::addOdometry(const vpOdometry &sample)
+{
+  for (double value : {sample.timestamp, sample.v, sample.w}) {
+    if (!std::isfinite(value)) {
+      throw vpException(vpException::badValue,
+                        "odometry: " + vpNumberText(value) + ", expected finite numbers");
+    }
+  }
+  if (m_odometry.empty() || sample.timestamp > m_odometry.back().timestamp) {
+    m_odometry.push_back(sample);
+  }
+}
+
+/*!
+  The base on its arc for \e dt, its velocity constant; backwards where that is negative. \e accelerates: its
+  velocity walks at random.
+*/
+void vpVlpFilter::move(double dt, bool accelerates)
+{
+  const Eigen::Vector2d v = m_x.segment<2>(vx);
+  const double heading = m_x(yaw) + 0.5 * m_x(w) * dt; // chord of the arc
+  const Eigen::Rotation2Dd R(heading);
+  const Eigen::Vector2d ahead = R * v, left(-ahead.y(), ahead.x()); // left: derivative by the heading
+  const double bend = 0.5 * m_x(w) * dt, chord = std::abs(bend) > 1e-9 ? std::sin(bend) / bend : 1;
+  m_x.head<2>() += chord * dt * ahead;
+  m_x(yaw) = std::remainder(m_x(yaw) + m_x(w) * dt, 2 * M_PI);
+
+  const Eigen::Index n = m_x.size();
+  Matrix F = Matrix::Identity(n, n);
+  F.block<2, 1>(x, yaw) = dt * left;
+  F.block<2, 2>(x, vx) = dt * R.toRotationMatrix();
+  F.block<2, 1>(x, w) = 0.5 * dt * dt * left;
+  F(yaw, w) = dt;
+  m_P = F * m_P * F.transpose();
+
+  const double t = std::abs(dt);
+  m_P(z, z) += square(drift) * t;
+  if (freeAttitude) {
+    m_P(roll, roll) += square(tiltDrift) * t;
+    m_P(pitch, pitch) += square(tiltDrift) * t;
+  }
+  if (accelerates) {
+    // Accelerations along x and y of b are alike, so that the heading does not matter.
+    const double a = square(m_unrest * acceleration), b = square(m_unrest * turnAcceleration);
+    const double sign = dt < 0 ? -1 : 1;
+    const Eigen::Matrix2d velocityPlace = sign * 0.5 * a * t * t * R.toRotationMatrix();
+    m_P.block<2, 2>(x, x).diagonal().array() += a * t * t * t / 3;
+    m_P.block<2, 2>(x, vx) += velocityPlace;
+    m_P.block<2, 2>(vx, x) += velocityPlace.transpose();
+    m_P.block<2, 2>(vx, vx).diagonal().array() += a * t;
+    m_P(yaw, yaw) += b * t * t * t / 3;
+    m_P(yaw, w) += sign * 0.5 * b * t * t;
+    m_P(w, yaw) += sign * 0.5 * b * t * t;
+    m_P(w, w) += b * t;
+  }
+}
+
+//! The velocity is what the sample says of its interval, whatever it was before.
+void vpVlpFilter::followOdometry(const vpOdometry &sample, double dt)
+{
+  static const double anySpeed = 1, anyTurn = 10; // m/s, rad/s: wheels start and stop within a sample
+  for (int i : {vx, vy, w}) {
+    m_P(i, i) += square(i == w ? anyTurn : anySpeed);
+  }
+  const Eigen::Index n = m_x.size();
+  Matrix H = Matrix::Zero(3, n);
+  H(0, vx) = 1 + m_x(speedScale);
+  H(0, speedScale) = m_x(vx);
+  H(1, vy) = 1;
+  H(2, w) = 1 + m_x(turnScale);
+  H(2, turnScale) = m_x(w);
+  H(2, turnBias) = 1;
+  // An error that changes from sample to sample averages out over samples, however long they are.
+  static const double usual = 0.02; // s
+  const double share = odometryShare * std::sqrt(usual / std::max(dt, 1e-3));
+  Matrix R = Matrix::Zero(3, 3);
+  R(0, 0) = square(odometrySpeed) + square(share * sample.v);
+  R(1, 1) = square(sidewaysSpeed);
+  R(2, 2) = square(odometryTurnRate) + square(share * sample.w);
+  const Eigen::Vector3d innovation(sample.v - (1 + m_x(speedScale)) * m_x(vx), -m_x(vy),
+                                   sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
+  measure(H, innovation, R);
+}
+
+void vpVlpFilter::advance(double time)
+{
+  if (!m_started) {
+    return;
+  }
+  while (m_odometry.size() > 1 && m_odometry[1].timestamp <= m_time) {
+    m_odometry.pop_front();
+  }
+  while (time > m_time && m_odometry.size() > 1) {
+    const vpOdometry &begin = m_odometry[0], &end = m_odometry[1];
+    static const double gap = 0.5; // s: of a longer interval the mean says little
+    if (begin.timestamp > m_time || end.timestamp - begin.timestamp > gap) {
+      break;
+    }
+    if (m_followed != end.timestamp) {
+      followOdometry(end, end.timestamp - begin.timestamp);
+      m_followed = end.timestamp;
+    }
+    const double until = std::min(time, end.timestamp);
+    move(until - m_time, false);
+    m_time = until;
+    if (m_time < end.timestamp) {
+      return;
+    }
+    m_odometry.pop_front();
+  }
+  if (time != m_time) {
+    static const double longest = 0.1; // s, of a step
+    const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(time - m_time) / longest)));
+    for (int k = 0; k < std::min(steps, 1000); ++k) {
+      move((time - m_time) / steps, true);
+    }
+    m_time = time;
+  }
+}
+
+void vpVlpFilter::mark(double time)
+{
+  advance(time);
+  const Eigen::Index n = m_x.size();
+  Matrix copy = Matrix::Identity(n, n);
+  copy.block<6, 6>(mark0, mark0).setZero();
+  copy.block<6, 6>(mark0, x).setIdentity();
+  m_x.segment<6>(mark0) = m_x.head<6>();
+  m_P = copy * m_P * copy.transpose();
+}
+
+//! Of the lamp's error in the state, -1 where it has none.
+Eigen::Index vpVlpFilter::lampIndex(const vpLampSight &lamp) const
+{
+  const auto found = std::find(m_lamps.begin(), m_lamps.end(), lamp.id);
+  return found == m_lamps.end() ? -1 : lamps + 3 * (found - m_lamps.begin());
+}
+
+void vpVlpFilter::addLamp(const vpLampSight &lamp)
+{
+  const Eigen::Index n = m_x.size();
+  m_x.conservativeResizeLike(Vector::Zero(n + 3));
+  m_P.conservativeResizeLike(Matrix::Zero(n + 3, n + 3));
+  m_P.bottomRightCorner<3, 3>().diagonal().setConstant(square(lamp.positionSigma));
+  m_lamps.push_back(lamp.id);
+}
+
+vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
+{
+  const vpBasePose pose = poseOf(m_x);
+  vpMountFrame frame(m_rig);
+  frame.btc += m_x.segment<3>(mount);
+  frame.bRc = Eigen::AngleAxisd(m_x(mount + 3), Eigen::Vector3d::UnitZ()) * frame.bRc;
+  const Eigen::Index own = lampIndex(lamp);
+  const Eigen::Vector3d place = own < 0 ? lamp.position : lamp.position + m_x.segment<3>(own);
+  const vpPredictedRay ray = predictRay(place, pose, frame);
+  Predicted predicted;
+  predicted.inFront = ray.inFront;
+  if (!ray.inFront) {
+    return predicted;
+  }
+  const Eigen::Vector3d camera = pose.wtb + pose.wRb * frame.btc;
+  predicted.depth = (pose.wRb * frame.bRc).col(2).dot(place - camera);
+  predicted.ray = ray.ray;
+  predicted.H = Matrix::Zero(2, m_x.size());
+  const Eigen::Matrix<double, 2, 3> byPlace = ray.derivative.leftCols<3>(),
+                                    byTurn = ray.derivative.rightCols<3>();
+  predicted.H.block<2, 3>(0, x) = byPlace;
+  predicted.H.block<2, 3>(0, yaw) = byTurn * rotationByAngles(m_x);
+  predicted.H.block<2, 3>(0, mount) = byPlace * pose.wRb;
+  // The camera turns about z of b and stays where it is.
+  const Eigen::Vector3d axis = pose.wRb.col(2);
+  predicted.H.col(mount + 3) = byTurn * axis - byPlace * axis.cross(pose.wRb * frame.btc);
+  if (own >= 0) {
+    predicted.H.block<2, 3>(0, own) = -byPlace;
+  } else {
+    predicted.ownDoubt = square(lamp.positionSigma) * byPlace * byPlace.transpose();
+  }
+  return predicted;
+}
+
+vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
+{
+  Innovation innovation;
+  const Predicted predicted = predict(lamp);
+  innovation.inFront = predicted.inFront;
+  if (predicted.inFront) {
+    innovation.ray = lamp.ray - predicted.ray;
+    innovation.covariance =
+        predicted.H * m_P * predicted.H.transpose() + predicted.ownDoubt + lamp.covariance;
+    innovation.depth = predicted.depth;
+  }
+  return innovation;
+}
+
+void vpVlpFilter::update(const vpLampSight &lamp)
+{
+  if (lamp.positionSigma > 0 && lampIndex(lamp) < 0) {
+    addLamp(lamp);
+  }
+  const Predicted predicted = predict(lamp);
+  if (predicted.inFront) {
+    measure(predicted.H, lamp.ray - predicted.ray, lamp.covariance);
+  }
+}
+
+void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matrix &R)
+{
+  const Matrix PH = m_P * H.transpose();
+  const Matrix K = (H * PH + R).ldlt().solve(PH.transpose()).transpose();
+  m_x += K * innovation;
+  m_x(yaw) = std::remainder(m_x(yaw), 2 * M_PI);
+  const Matrix rest = Matrix::Identity(m_x.size(), m_x.size()) - K * H;
+  m_P = rest * m_P * rest.transpose() + K * R * K.transpose();
+  m_P = 0.5 * (m_P + m_P.transpose()).eval();
+}
+
+//! Of the pose in the state from there on.
+vpVlpFix vpVlpFilter::fixOf(Index first) const
+{
+  vpVlpFix fix;
+  fix.valid = m_started;
+  if (!m_started) {
+    fix.refusal = "no pose yet";
+    return fix;
+  }
+  const Vector state = m_x.segment<6>(first);
+  fix.wMb = poseOf(state).wMb();
+  fix.wMc = fix.wMb * m_rig.bMc;
+  Matrix byState = Matrix::Zero(6, 6);
+  byState.topLeftCorner<3, 3>().setIdentity();
+  byState.bottomRightCorner<3, 3>() = rotationByAngles(state);
+  fix.covariance = byState * m_P.block<6, 6>(first, first) * byState.transpose();
+  return fix;
+}
+
+vpVlpFix vpVlpFilter::marked() const
+{
+  return fixOf(mark0);
+}
+
+vpVlpFix vpVlpFilter::fixAt(double time) const
+{
+  vpVlpFilter there = *this;
+  there.rouse();
+  there.advance(time);
+  return there.fixOf(x);
+}
+
+vpVlpFilter::State vpVlpFilter::state(const vpVlpFix &fix) const
+{
+  if (!fix.valid) {
+    return State::starting;
+  }
+  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
+               turn = std::sqrt(fix.covariance(5, 5));
+  if (!(place < lostSigma)) {
+    return State::lost;
+  }
+  return place < trackingSigma && turn < trackingYaw ? State::tracking : State::coasting;
+}
+
+END_VISP_NAMESPACE

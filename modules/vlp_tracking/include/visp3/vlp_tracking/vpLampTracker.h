@@ -1,0 +1,90 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLampTracker_h
+#define vpLampTracker_h
+
+#include <memory>
+#include <vector>
+
+#include <visp3/vlp_core/vpVlpFrame.h>
+#include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_detection/vpLedIdEvidence.h>
+#include <visp3/vlp_tracking/vpTargetTracker.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  Follows all lamps at once. Each has a target tracker (improved Camshift-Kalman, or another), which hands over
+  the window in which outline, stripes and LED-ID are looked for; what the stripes of its frames say together
+  tells which lamp it is.
+
+  New lamps are born of a search that covers a strip of each frame, so that its cost is bounded; of the whole
+  frame only where fewer lamps than `needed` are in sight. One that is not seen for `patience` dies, and so does
+  one that left the picture. Stripes that contradict what a lamp has shown before are another lamp's: it begins
+  anew, with a new number and without an id, until its own stripes give it one. So ids are never handed from
+  lamp to lamp where two cross or one is replaced.
+
+  Steady regions (windows, lamps without stripes) are seen where the search comes by, and not followed.
+
+  \code
+  vpLampTracker tracker(rig, map);
+  for (const vpLampObservation &lamp : tracker.track(frame)) {
+    ...
+  }
+  \endcode
+*/
+class VISP_EXPORT vpLampTracker
+{
+public:
+  vpLedDetector detector;
+  vpTargetTracker::Method method = vpTargetTracker::Method::camshiftKalman;
+  double patience = 1;      // s
+  double margin = 0.7;      // of a lamp's extent, by which it is looked for beyond its window on each side
+  double searchShare = 0.2; // of the picture that is searched for new lamps in each frame
+  size_t needed = 2;        // lamps in sight with an id, below which all of it is
+
+  vpLampTracker(const vpVlpRig &rig, const vpLampMap &map);
+  ~vpLampTracker();
+  vpLampTracker(vpLampTracker &&) noexcept;
+
+  /*!
+    Every lamp-like region that was looked at, the one with the largest lit area first. Their features are those
+    of all frames of the lamp together, `track` its number.
+    \param expected Where else lamps are to be looked for, px: what is known of the robot's motion says so.
+    \throw vpException (dimensionError) where the picture has not the size that the rig states; (badValue) where
+    its time is not later than that of the one before.
+  */
+  const std::vector<vpLampObservation> &track(const vpVlpFrame &frame, const std::vector<vpRect> &expected = {});
+
+  //! Forgets all lamps.
+  void reset();
+
+  //! Lamps that are followed, seen in the last frame or not.
+  size_t tracks() const { return m_tracks.size(); }
+
+private:
+  struct Track;
+
+  std::vector<vpRect> windows(const vpVlpFrame &frame, const std::vector<vpRect> &expected);
+  vpRect strip();
+  void assign();
+  void follow(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
+  void bear(vpLampObservation &seen, const vpVlpFrame &frame);
+  void bury(double time);
+
+  vpVlpRig m_rig;
+  std::vector<Track> m_tracks;
+  std::vector<vpLampObservation> m_observations;
+  std::vector<int> m_trackOf; // of each observation, -1: none
+  unsigned int m_born = 0;    // lamps in all
+  double m_time = 0;          // s, of the last frame
+  bool m_any = false;         // frame so far
+  unsigned int m_strip = 0;   // that is searched next
+  size_t m_inSight = 0;       // lamps with an id in the last frame
+};
+
+END_VISP_NAMESPACE
+
+#endif

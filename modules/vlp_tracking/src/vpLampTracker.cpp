@@ -1,0 +1,230 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_tracking/vpLampTracker.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+vpRect boxOf(const vpLampOutline &outline)
+{
+  const Eigen::Vector4d box = outline.box();
+  return {box(0), box(1), box(2) - box(0), box(3) - box(1)};
+}
+
+//! Larger by \e share of its size on each side.
+vpRect widened(const vpRect &rect, double share)
+{
+  const double x = share * rect.getWidth(), y = share * rect.getHeight();
+  return {rect.getLeft() - x, rect.getTop() - y, rect.getWidth() + 2 * x, rect.getHeight() + 2 * y};
+}
+
+//! The part of a rectangle that lies in a picture; of no size where there is none.
+vpRect inside(const vpRect &rect, const vpImage<unsigned char> &I)
+{
+  const double left = std::max(0.0, std::ceil(rect.getLeft())), top = std::max(0.0, std::ceil(rect.getTop())),
+               right = std::min(I.getWidth() - 1.0, std::floor(rect.getLeft() + rect.getWidth())),
+               bottom = std::min(I.getHeight() - 1.0, std::floor(rect.getTop() + rect.getHeight()));
+  return {left, top, std::max(0.0, right - left + 1), std::max(0.0, bottom - top + 1)};
+}
+
+double overlap(const vpRect &a, const vpRect &b)
+{
+  const double x = std::min(a.getLeft() + a.getWidth(), b.getLeft() + b.getWidth()) -
+                   std::max(a.getLeft(), b.getLeft()),
+               y = std::min(a.getTop() + a.getHeight(), b.getTop() + b.getHeight()) -
+                   std::max(a.getTop(), b.getTop());
+  const double common = std::max(0.0, x) * std::max(0.0, y);
+  return common / std::max(1.0, a.getWidth() * a.getHeight() + b.getWidth() * b.getHeight() - common);
+}
+
+bool blinks(const vpLampObservation &seen)
+{
+  return seen.features.signal != vpStripeFeatures::Signal::unmodulated &&
+         seen.outline.shape != vpLampOutline::Shape::region;
+}
+} // namespace
+
+//! A lamp that is followed.
+struct vpLampTracker::Track {
+  unsigned int number = 0;
+  std::unique_ptr<vpTargetTracker> target;
+  vpLedIdEvidence evidence;
+  vpRect window;         // px, where it is expected in the frame at hand
+  double seenLast = 0;   // s
+  bool taken = false;    // by an observation of the frame at hand
+};
+
+vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detector(rig, map), m_rig(rig) {}
+vpLampTracker::~vpLampTracker() = default;
+vpLampTracker::vpLampTracker(vpLampTracker &&) noexcept = default;
+
+void vpLampTracker::reset()
+{
+  m_tracks.clear();
+  m_inSight = 0;
+  m_any = false;
+}
+
+const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &frame,
+                                                           const std::vector<vpRect> &expected)
+{
+  if (m_any && !(frame.timestamp > m_time)) {
+    throw vpException(vpException::badValue, "frame: time " + vpNumberText(frame.timestamp) +
+                                                 " s, expected one after that of the frame before, " +
+                                                 vpNumberText(m_time) + " s");
+  }
+  detector.check(frame.I);
+  // Windows from the target trackers, a strip in search of new lamps, or all of the picture.
+  if (m_inSight < needed) {
+    windows(frame, expected);
+    detector.detect(frame.I);
+  } else {
+    detector.detect(frame.I, windows(frame, expected));
+  }
+  m_observations = detector.observations();
+
+  // Which region is which lamp; what all its frames say of it; what is new.
+  assign();
+  for (size_t i = 0; i < m_observations.size(); ++i) {
+    if (m_trackOf[i] >= 0) {
+      follow(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
+    } else if (blinks(m_observations[i])) {
+      bear(m_observations[i], frame);
+    }
+  }
+  detector.recognizer.recognize(m_observations);
+  m_inSight = static_cast<size_t>(
+      std::count_if(m_observations.begin(), m_observations.end(),
+                    [](const vpLampObservation &seen) { return !seen.candidates.empty(); }));
+  m_time = frame.timestamp;
+  m_any = true;
+  bury(frame.timestamp);
+  return m_observations;
+}
+
+//! Where to look: around each target, where lamps are expected, and the strip whose turn it is.
+std::vector<vpRect> vpLampTracker::windows(const vpVlpFrame &frame, const std::vector<vpRect> &expected)
+{
+  std::vector<vpRect> all;
+  for (Track &track : m_tracks) {
+    track.target->track(frame.I);
+    track.taken = false;
+    track.window = track.target->window();
+    all.push_back(widened(track.window, margin));
+  }
+  all.insert(all.end(), expected.begin(), expected.end());
+  all.push_back(strip());
+  return all;
+}
+
+vpRect vpLampTracker::strip()
+{
+  const bool columns = m_rig.shutter.alongColumns();
+  const double length = columns ? m_rig.width : m_rig.height, across = columns ? m_rig.height : m_rig.width;
+  const auto strips = static_cast<unsigned int>(std::ceil(1 / std::clamp(searchShare, 0.01, 1.0)));
+  const double width = length / strips, from = (m_strip++ % strips) * width;
+  return columns ? vpRect(from, 0, width, across) : vpRect(0, from, across, width);
+}
+
+/*!
+  Regions to tracks, the surest pairs first: near the window that the target tracker has, and blinking as the
+  lamp did. One that blinks otherwise is taken where nothing else is: it replaced the lamp.
+*/
+void vpLampTracker::assign()
+{
+  static const double farthest = 1.5, disagreement = 1; // of the window's diagonal
+  std::vector<std::tuple<double, size_t, size_t>> pairs;
+  for (size_t i = 0; i < m_observations.size(); ++i) {
+    const vpLampObservation &seen = m_observations[i];
+    if (!blinks(seen) && seen.features.signal != vpStripeFeatures::Signal::unmodulated) {
+      continue;
+    }
+    const vpRect box = boxOf(seen.outline);
+    for (size_t t = 0; t < m_tracks.size(); ++t) {
+      const vpImagePoint centre = m_tracks[t].target->center();
+      const double size = std::hypot(m_tracks[t].window.getWidth(), m_tracks[t].window.getHeight());
+      const double apart = std::hypot(seen.outline.centre.x() - centre.get_u(),
+                                      seen.outline.centre.y() - centre.get_v()) /
+                           std::max({size, box.getWidth(), box.getHeight(), 1.0});
+      if (apart < farthest) {
+        pairs.emplace_back(apart + (m_tracks[t].evidence.agrees(seen.features) ? 0 : disagreement), i, t);
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  m_trackOf.assign(m_observations.size(), -1);
+  for (const auto &[cost, i, t] : pairs) {
+    if (m_trackOf[i] < 0 && !m_tracks[t].taken) {
+      m_trackOf[i] = static_cast<int>(t);
+      m_tracks[t].taken = true;
+    }
+  }
+}
+
+//! Adds what a frame says of a lamp to what is known of it.
+void vpLampTracker::follow(Track &track, vpLampObservation &seen, const vpVlpFrame &frame)
+{
+  if (blinks(seen)) {
+    if (!track.evidence.add(seen.features)) {
+      track.number = ++m_born; // another lamp in its place
+    }
+    const double area = seen.features.area;
+    seen.features = track.evidence.features();
+    seen.features.area = area;
+    track.seenLast = frame.timestamp;
+  }
+  seen.track = track.number;
+  static const double alike = 0.7;
+  const vpRect box = inside(boxOf(seen.outline), frame.I);
+  if (overlap(box, track.target->window()) < alike && box.getWidth() >= 4 && box.getHeight() >= 4) {
+    track.target->correct(frame.I, box);
+  }
+}
+
+void vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
+{
+  const vpRect box = inside(boxOf(seen.outline), frame.I);
+  if (box.getWidth() < 4 || box.getHeight() < 4) {
+    return;
+  }
+  Track track;
+  track.target = vpTargetTracker::make(method);
+  try {
+    track.target->initTracking(frame.I, box);
+  } catch (const vpException &) {
+    return; // nothing in it that this method can follow
+  }
+  track.number = ++m_born;
+  track.evidence.add(seen.features);
+  track.seenLast = frame.timestamp;
+  track.window = box;
+  track.taken = true;
+  seen.track = track.number;
+  m_tracks.push_back(std::move(track));
+}
+
+//! Lamps that were not seen for long, or that left the picture.
+void vpLampTracker::bury(double time)
+{
+  m_tracks.erase(std::remove_if(m_tracks.begin(), m_tracks.end(),
+                                [&](const Track &track) {
+                                  const vpRect window = track.target->window();
+                                  const bool gone = !(window.getWidth() > 0 && window.getHeight() > 0);
+                                  return time - track.seenLast > patience || (gone && !track.taken);
+                                }),
+                 m_tracks.end());
+}
+
+END_VISP_NAMESPACE
