@@ -41,6 +41,9 @@ vpRect moved(const vpRect &window, double du, double dv)
 
 //! A share of the kernel too small to judge by.
 const double leastVisible = 0.2;
+
+const double surroundings = 2; // window sizes on a side
+const double usualRate = 0.1;  // a frame
 } // namespace
 
 //! Where mean shift came to rest, and what is there.
@@ -57,8 +60,13 @@ struct vpCamshiftKalmanTracker::Impl {
   struct Reference {
     double offsetU = 0, offsetV = 0; // of the window's middle from the middle of the back projection
     double sigmaU = 0, sigmaV = 0;   // spread of the back projection
-    double crowd = 0;                // mass in the search window for each of the window
     double width = 0, height = 0;    // px
+  };
+
+  //! Running means over the frames in which all was well.
+  struct Usual {
+    double coefficient = 1;
+    double crowd = 0; // mass in the search window for each of the window
   };
 
   vpTargetModel model;
@@ -66,6 +74,8 @@ struct vpCamshiftKalmanTracker::Impl {
   vpWindowSums sums;
   vpGrownSearch grown;
   Reference reference;
+  Usual usual;
+  double acceleration = 0; // px/frame^2, standard deviation
   bool colour = false;
   double width = 0, height = 0;                     // px, of the window
   unsigned int pictureWidth = 0, pictureHeight = 0; // px
@@ -80,10 +90,23 @@ struct vpCamshiftKalmanTracker::Impl {
     return inside > 0 ? candidate.moments.mass / inside : 0;
   }
 
-  //! How much more of the target's kind is around the window than belongs to it; 0 where all is well.
+  //! How much more of the target's kind is around the window than usual; 0 where all is well.
   double crowding(const Candidate &candidate) const
   {
-    return reference.crowd > 0 ? std::max(0.0, crowdOf(candidate) / reference.crowd - 1) : 0;
+    return usual.crowd > 0 ? std::max(0.0, crowdOf(candidate) / usual.crowd - 1) : 0;
+  }
+
+  /*!
+    How far a sighting is as usual, 0 to 1. A part of the target may be hidden, or outside the picture; or
+    more of its kind than usual is near, where another target may pass, and what was found may lie between the
+    two.
+  */
+  double trust(const Candidate &candidate) const
+  {
+    static const double weight = 3; // of another target nearby
+    const double likeness =
+        usual.coefficient > 0 ? std::min(1.0, candidate.coefficient / usual.coefficient) : 0;
+    return likeness * candidate.visible / (1 + weight * crowding(candidate));
   }
 };
 
@@ -112,7 +135,6 @@ double vpCamshiftKalmanTracker::positionSigma() const
 template <class Pixel>
 vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel> &I, const vpRect &window)
 {
-  static const double surroundings = 2; // window sizes
   Impl &own = *m_impl;
   own = Impl();
   own.colour = std::is_same_v<Pixel, vpRGBa>;
@@ -137,7 +159,8 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel
   own.reference.sigmaV = rest.moments.sigmaV / own.height;
   Candidate given = rest;
   given.shares = own.sums.histogram(I, binOf, window);
-  own.reference.crowd = own.crowdOf(given);
+  own.usual.crowd = own.crowdOf(given);
+  own.acceleration = steadiness * own.size();
   own.filter.init(middle, noiseFloor, own.size()); // a size a frame: nothing is known of its velocity
   return {window, own.model.bhattacharyya(given.shares), true};
 }
@@ -163,8 +186,10 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
   }
   if (recognized) {
     correct(seen);
-    adaptSize(seen);
-    refreshModel(I, seen);
+    if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted) {
+      adaptSize(seen);
+      refreshModel(I, seen);
+    }
     m_impl->missed = 0;
   } else {
     m_impl->filter.coast();
@@ -179,7 +204,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
 vpRect vpCamshiftKalmanTracker::predictWindow()
 {
   Impl &own = *m_impl;
-  auto predict = [&own, this] { return own.filter.predict(accelerationSigma * own.size()); };
+  auto predict = [&own] { return own.filter.predict(own.acceleration); };
   vpImagePoint middle = predict();
   auto reachable = [](double x, double length, unsigned int pixels) {
     return std::clamp(x, -0.5 * length, pixels + 0.5 * length);
@@ -269,24 +294,32 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::bestOfGrownWindow(co
 }
 
 /*!
-  Where more of the target's kind is near than belongs to it, another one may pass, and what was found may lie
-  between the two: then, and where a part of the window is outside the picture, the coefficient counts for
-  less.
+  What a sighting that is not as usual may be off by, its noise covers. An innovation beyond that, and beyond
+  what the prediction's own doubt covers, is the target's: it changes its velocity, and the prediction is made
+  again with as much process noise, which then calms down slowly. So a target that goes straight is not pulled
+  off by what hides half of it, and one that turns is followed.
 */
 void vpCamshiftKalmanTracker::correct(const Candidate &seen)
 {
-  const double trust = seen.coefficient * seen.visible / (1 + m_impl->crowding(seen));
-  m_impl->filter.correct(seen.window.getCenter(), measurementSigma(std::max(trust, threshold)));
+  static const double covered = 2; // standard deviations
+  static const double calming = 0.9;
+  Impl &own = *m_impl;
+  const double sigma = measurementSigma(std::max(own.trust(seen), threshold));
+  const vpImagePoint measured = seen.window.getCenter();
+  const double innovation = vpImagePoint::distance(measured, own.filter.predicted());
+  const double manoeuvre = innovation - covered * std::hypot(sigma, own.filter.predictedSigma());
+  own.acceleration = std::max(steadiness * own.size(), calming * own.acceleration);
+  if (manoeuvre > own.acceleration) {
+    own.acceleration = std::min(manoeuvre, own.size());
+    own.filter.predict(own.acceleration);
+  }
+  own.filter.correct(measured, sigma);
 }
 
 void vpCamshiftKalmanTracker::adaptSize(const Candidate &seen)
 {
-  static const double crowded = 0.15;
   static const double most = 3; // times the first size, or a part of it
   Impl &own = *m_impl;
-  if (seen.coefficient < trusted || seen.visible < 1 || own.crowding(seen) > crowded) {
-    return;
-  }
   auto adapted = [this](double length, double sigma, double referenceSigma, double firstLength) {
     if (!(sigma > 0 && referenceSigma > 0)) {
       return length;
@@ -302,16 +335,14 @@ void vpCamshiftKalmanTracker::adaptSize(const Candidate &seen)
 template <class Pixel>
 void vpCamshiftKalmanTracker::refreshModel(const vpImage<Pixel> &I, const Candidate &seen)
 {
-  static const double surroundings = 2; // window sizes
-  static const double crowded = 0.15;
   Impl &own = *m_impl;
-  if (seen.coefficient < trusted || seen.visible < 1 || own.crowding(seen) > crowded ||
-      ++own.trustedFrames % std::max(1, refreshInterval) != 0) {
-    return;
+  own.usual.coefficient += usualRate * (seen.coefficient - own.usual.coefficient);
+  own.usual.crowd += usualRate * (own.crowdOf(seen) - own.usual.crowd);
+  if (++own.trustedFrames % std::max(1, refreshInterval) == 0) {
+    own.model.refresh(seen.shares,
+                      own.sums.histogramAround(I, binsOf(I), seen.window, scaled(seen.window, surroundings)),
+                      refreshRate);
   }
-  own.model.refresh(seen.shares,
-                    own.sums.histogramAround(I, binsOf(I), seen.window, scaled(seen.window, surroundings)),
-                    refreshRate);
 }
 
 vpTargetTracker::Sighting vpCamshiftKalmanTracker::begin(const vpImage<unsigned char> &I,

@@ -35,7 +35,7 @@ vpImagePoint vpPositionFilter::predict(double accelerationSigma)
     m_filter.Q[axis + 2][axis + 2] = q;
   }
   m_filter.prediction();
-  return vpImagePoint(m_filter.Xpre[1], m_filter.Xpre[0]);
+  return predicted();
 }
 
 void vpPositionFilter::correct(const vpImagePoint &measured, double sigma)
@@ -59,6 +59,16 @@ void vpPositionFilter::rest(const vpImagePoint &position)
   m_filter.Xest[0] = position.get_u();
   m_filter.Xest[1] = position.get_v();
   m_filter.Xest[2] = m_filter.Xest[3] = 0;
+}
+
+vpImagePoint vpPositionFilter::predicted() const
+{
+  return vpImagePoint(m_filter.Xpre[1], m_filter.Xpre[0]);
+}
+
+double vpPositionFilter::predictedSigma() const
+{
+  return std::sqrt((m_filter.Ppre[0][0] + m_filter.Ppre[1][1]) / 2);
 }
 
 vpImagePoint vpPositionFilter::position() const

@@ -20,7 +20,8 @@ class vpPositionFilter
 public:
   void init(const vpImagePoint &position, double positionSigma, double velocitySigma);
 
-  //! \e accelerationSigma, px/frame^2: change of velocity from frame to frame.
+  //! From the last estimate, also where it was called before. \e accelerationSigma, px/frame^2: change of
+  //! velocity from frame to frame.
   vpImagePoint predict(double accelerationSigma);
 
   //! After predict(), where the target was seen; \e sigma in px.
@@ -31,6 +32,9 @@ public:
 
   //! Moves the estimate, and lets it rest there.
   void rest(const vpImagePoint &position);
+
+  vpImagePoint predicted() const;
+  double predictedSigma() const; // px, root mean square of both axes
 
   vpImagePoint position() const;
   vpImagePoint velocity() const; // px/frame

@@ -35,20 +35,20 @@ BEGIN_VISP_NAMESPACE
 class VISP_EXPORT vpCamshiftKalmanTracker : public vpTargetTracker
 {
 public:
-  double searchMargin = 0.25;     // on each side of the window, as a share of it, for mean shift
-  double convergence = 0.2;       // px, the move at which mean shift rests
-  int maxIterations = 15;         // of mean shift
-  double threshold = 0.5;         // Bhattacharyya coefficient below which the target is not seen
-  double regainThreshold = 0.7;   // the same for what is found elsewhere, or after the target was not seen
-  double searchGrowth = 1.3;      // of the search window's sides, from frame to frame while not seen
-  double noiseFloor = 0.5;        // px, measurement sigma of a perfect likeness
-  double noiseScale = 0.3;        // window sizes, measurement sigma where rho is one half
-  double accelerationSigma = 0.1; // window sizes per frame^2, change of velocity
-  double sizeRate = 0.3;          // share of a change of size followed in one frame
-  double maxSizeChange = 0.05;    // of the window's sides, in one frame
-  double trusted = 0.85;          // coefficient from which size and model are adapted
-  double refreshRate = 0.1;       // share of the model replaced at each refresh
-  int refreshInterval = 5;        // trusted frames
+  double searchMargin = 0.25;   // on each side of the window, as a share of it, for mean shift
+  double convergence = 0.2;     // px, the move at which mean shift rests
+  int maxIterations = 15;       // of mean shift
+  double threshold = 0.5;       // Bhattacharyya coefficient below which the target is not seen
+  double regainThreshold = 0.7; // the same for what is found elsewhere, or after the target was not seen
+  double searchGrowth = 1.3;    // of the search window's sides, from frame to frame while not seen
+  double noiseFloor = 0.5;      // px, measurement sigma of a perfect likeness
+  double noiseScale = 1;        // window sizes, measurement sigma where rho is one half
+  double steadiness = 0.005;    // window sizes per frame^2, smallest change of velocity reckoned with
+  double sizeRate = 0.3;        // share of a change of size followed in one frame
+  double maxSizeChange = 0.05;  // of the window's sides, in one frame
+  double trusted = 0.85;        // coefficient from which size and model are adapted
+  double refreshRate = 0.1;     // share of the model replaced at each refresh
+  int refreshInterval = 5;      // trusted frames
 
   vpCamshiftKalmanTracker();
   ~vpCamshiftKalmanTracker() override;
