@@ -43,7 +43,6 @@ vpRect moved(const vpRect &window, double du, double dv)
 const double leastVisible = 0.2;
 
 const double surroundings = 2; // window sizes on a side
-const double usualRate = 0.1;  // a frame
 } // namespace
 
 //! Where mean shift came to rest, and what is there.
@@ -63,10 +62,17 @@ struct vpCamshiftKalmanTracker::Impl {
     double width = 0, height = 0;    // px
   };
 
-  //! Running means over the frames in which all was well.
+  //! Running mean of a figure, and of how far it strays from it: stripes that change their phase make some.
   struct Usual {
-    double coefficient = 1;
-    double crowd = 0; // mass in the search window for each of the window
+    double mean = 0, spread = 0;
+
+    void add(double value)
+    {
+      static const double rate = 0.1; // a frame
+      spread += rate * (std::abs(value - mean) - spread);
+      mean += rate * (value - mean);
+    }
+    double margin() const { return 2 * spread; }
   };
 
   vpTargetModel model;
@@ -74,7 +80,8 @@ struct vpCamshiftKalmanTracker::Impl {
   vpWindowSums sums;
   vpGrownSearch grown;
   Reference reference;
-  Usual usual;
+  Usual coefficient;       // in the frames in which all was well
+  Usual crowd;             // the same, mass in the search window for each of the window
   double acceleration = 0; // px/frame^2, standard deviation
   bool colour = false;
   double width = 0, height = 0;                     // px, of the window
@@ -90,12 +97,6 @@ struct vpCamshiftKalmanTracker::Impl {
     return inside > 0 ? candidate.moments.mass / inside : 0;
   }
 
-  //! How much more of the target's kind is around the window than usual; 0 where all is well.
-  double crowding(const Candidate &candidate) const
-  {
-    return usual.crowd > 0 ? std::max(0.0, crowdOf(candidate) / usual.crowd - 1) : 0;
-  }
-
   /*!
     How far a sighting is as usual, 0 to 1. A part of the target may be hidden, or outside the picture; or
     more of its kind than usual is near, where another target may pass, and what was found may lie between the
@@ -103,10 +104,9 @@ struct vpCamshiftKalmanTracker::Impl {
   */
   double trust(const Candidate &candidate) const
   {
-    static const double weight = 3; // of another target nearby
-    const double likeness =
-        usual.coefficient > 0 ? std::min(1.0, candidate.coefficient / usual.coefficient) : 0;
-    return likeness * candidate.visible / (1 + weight * crowding(candidate));
+    const double likeness = std::min(1.0, (candidate.coefficient + coefficient.margin()) / coefficient.mean);
+    const double more = (crowdOf(candidate) - crowd.margin()) / crowd.mean;
+    return likeness * candidate.visible / std::max(1.0, more);
   }
 };
 
@@ -159,7 +159,8 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel
   own.reference.sigmaV = rest.moments.sigmaV / own.height;
   Candidate given = rest;
   given.shares = own.sums.histogram(I, binOf, window);
-  own.usual.crowd = own.crowdOf(given);
+  own.coefficient.mean = 1;
+  own.crowd.mean = std::max(own.crowdOf(given), 1e-3);
   own.acceleration = steadiness * own.size();
   own.filter.init(middle, noiseFloor, own.size()); // a size a frame: nothing is known of its velocity
   return {window, own.model.bhattacharyya(given.shares), true};
@@ -187,6 +188,8 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
   if (recognized) {
     correct(seen);
     if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted) {
+      m_impl->coefficient.add(seen.coefficient);
+      m_impl->crowd.add(m_impl->crowdOf(seen));
       adaptSize(seen);
       refreshModel(I, seen);
     }
@@ -336,8 +339,6 @@ template <class Pixel>
 void vpCamshiftKalmanTracker::refreshModel(const vpImage<Pixel> &I, const Candidate &seen)
 {
   Impl &own = *m_impl;
-  own.usual.coefficient += usualRate * (seen.coefficient - own.usual.coefficient);
-  own.usual.crowd += usualRate * (own.crowdOf(seen) - own.usual.crowd);
   if (++own.trustedFrames % std::max(1, refreshInterval) == 0) {
     own.model.refresh(seen.shares,
                       own.sums.histogramAround(I, binsOf(I), seen.window, scaled(seen.window, surroundings)),
