@@ -42,6 +42,9 @@ vpRect moved(const vpRect &window, double du, double dv)
 //! A share of the kernel too small to judge by.
 const double leastVisible = 0.2;
 
+//! Trust from which nothing seems to be hidden, or near.
+const double asUsual = 0.98;
+
 const double surroundings = 2; // window sizes on a side
 } // namespace
 
@@ -66,9 +69,8 @@ struct vpCamshiftKalmanTracker::Impl {
   struct Usual {
     double mean = 0, spread = 0;
 
-    void add(double value)
+    void add(double value, double rate)
     {
-      static const double rate = 0.1; // a frame
       spread += rate * (std::abs(value - mean) - spread);
       mean += rate * (value - mean);
     }
@@ -107,6 +109,14 @@ struct vpCamshiftKalmanTracker::Impl {
     const double likeness = std::min(1.0, (candidate.coefficient + coefficient.margin()) / coefficient.mean);
     const double more = (crowdOf(candidate) - crowd.margin()) / crowd.mean;
     return likeness * candidate.visible / std::max(1.0, more);
+  }
+
+  //! What comes on slowly and stays is usual after all.
+  void learnUsual(const Candidate &seen)
+  {
+    const double rate = trust(seen) >= asUsual ? 0.1 : 0.02; // a frame
+    coefficient.add(seen.coefficient, rate);
+    crowd.add(crowdOf(seen), rate);
   }
 };
 
@@ -148,6 +158,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel
 
   // The middle of what tells the target from its surroundings need not be that of the window given.
   static const double farthest = 0.25;
+  static const double firstSpread = 0.01;
   const Candidate rest = meanShift(I, window);
   const vpImagePoint middle = window.getCenter(), found = rest.window.getCenter();
   auto offset = [](double difference, double length) {
@@ -159,8 +170,8 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel
   own.reference.sigmaV = rest.moments.sigmaV / own.height;
   Candidate given = rest;
   given.shares = own.sums.histogram(I, binOf, window);
-  own.coefficient.mean = 1;
-  own.crowd.mean = std::max(own.crowdOf(given), 1e-3);
+  own.coefficient = {1, firstSpread};
+  own.crowd = {std::max(own.crowdOf(given), 1e-3), firstSpread};
   own.acceleration = steadiness * own.size();
   own.filter.init(middle, noiseFloor, own.size()); // a size a frame: nothing is known of its velocity
   return {window, own.model.bhattacharyya(given.shares), true};
@@ -188,10 +199,11 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
   if (recognized) {
     correct(seen);
     if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted) {
-      m_impl->coefficient.add(seen.coefficient);
-      m_impl->crowd.add(m_impl->crowdOf(seen));
-      adaptSize(seen);
-      refreshModel(I, seen);
+      m_impl->learnUsual(seen);
+      if (m_impl->trust(seen) >= asUsual) {
+        adaptSize(seen);
+        refreshModel(I, seen);
+      }
     }
     m_impl->missed = 0;
   } else {
