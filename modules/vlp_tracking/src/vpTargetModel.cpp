@@ -112,7 +112,7 @@ void vpTargetModel::weigh()
   double told = 0;
   for (size_t bin = 0; bin < m_target.size(); ++bin) {
     const double q = m_target[bin], o = m_surroundings[bin];
-    const double weight = q > o ? (q - o) / (q + o) : 0;
+    const double weight = q > o ? (q - o) * (q - o) / ((q + o) * (q + o)) : 0;
     m_weights[bin] = static_cast<int>(std::lround(whole * weight));
     told += weight * q;
   }

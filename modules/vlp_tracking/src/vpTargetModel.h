@@ -44,9 +44,10 @@ using vpBinShares = std::array<double, vpColourBins::count>;
   What the target looks like: its histogram q, and by how much each bin tells it from its surroundings, whose
   histogram is o.
 
-  A bin's weight is w = max(0, (q - o) / (q + o)), after Comaniciu, Ramesh and Meer, Kernel-based object
+  A bin's weight is w = (max(0, q - o) / (q + o))^2, after Comaniciu, Ramesh and Meer, Kernel-based object
   tracking, PAMI 2003, section 6.1, whose weights min(o)/o depend on the rarest bin alone: 1 for what the
-  target alone has, 0 for what the surroundings have at least as much of.
+  target alone has, 0 for what the surroundings have at least as much of. Squared, for bins of little weight
+  are all over a window, and would pull more than they tell.
 
   The histograms are smoothed over neighbouring bins: a stripe that meets the lines at another phase has other
   grey levels, but not far from those before.

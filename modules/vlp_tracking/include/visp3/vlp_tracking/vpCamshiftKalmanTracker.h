@@ -35,7 +35,7 @@ BEGIN_VISP_NAMESPACE
 class VISP_EXPORT vpCamshiftKalmanTracker : public vpTargetTracker
 {
 public:
-  double searchMargin = 0.25;   // on each side of the window, as a share of it, for mean shift
+  double searchMargin = 0.15;   // on each side of the window, as a share of it, for mean shift
   double convergence = 0.2;     // px, the move at which mean shift rests
   int maxIterations = 15;       // of mean shift
   double threshold = 0.5;       // Bhattacharyya coefficient below which the target is not seen
