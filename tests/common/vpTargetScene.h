@@ -100,7 +100,8 @@ struct vpTargetScene {
     if (obstacles)
       for (const cv::Rect &rect : obstacles(frame)) {
         const cv::Rect part = rect & cv::Rect(0, 0, width, height);
-        m_obstacle(part).copyTo(picture(part));
+        if (!part.empty())
+          m_obstacle(part).copyTo(picture(part));
       }
     return noisy(picture, generator);
   }

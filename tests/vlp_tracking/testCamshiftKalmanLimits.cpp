@@ -130,8 +130,9 @@ TEST(CamshiftKalmanLimits, LeavesThePictureAndComesBack)
                         truth.getTop() >= made.height;
       const bool whole = truth.getLeft() >= 0 && truth.getTop() >= 0 && truth.getRight() < made.width &&
                          truth.getBottom() < made.height;
-      if (gone)
+      if (gone) {
         EXPECT_FALSE(seen) << "way " << way.transpose() << ", frame " << k;
+      }
       if (whole && k < 60) {
         EXPECT_TRUE(seen) << "way " << way.transpose() << ", frame " << k;
         EXPECT_LT(errorOf(tracker, made, k), 3) << "way " << way.transpose() << ", frame " << k;

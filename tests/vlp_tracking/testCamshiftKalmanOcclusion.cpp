@@ -77,8 +77,9 @@ TEST(CamshiftKalmanOcclusion, DoubtGrowsWithEachFrameNotSeen)
   double before = 0;
   for (int k = 1; k <= 35; ++k) {
     tracker.track(made.grey(k));
-    if (k >= 20)
+    if (k >= 20) {
       EXPECT_GT(tracker.positionSigma(), before) << "frame " << k;
+    }
     before = tracker.positionSigma();
   }
   EXPECT_LT(tracker.positionSigma(), 100);
@@ -118,7 +119,7 @@ TEST(CamshiftKalmanOcclusion, WhatHidesItDoesNotBecomeTheModel)
   }
 }
 
-// A lamp dimmed slowly to two thirds is the same lamp all the time.
+// A lamp dimmed slowly by a quarter is the same lamp all the time.
 TEST(CamshiftKalmanOcclusion, TheModelFollowsASlowChange)
 {
   const vpTargetScene made = stripedLamp(2);
@@ -128,7 +129,7 @@ TEST(CamshiftKalmanOcclusion, TheModelFollowsASlowChange)
   for (int k = 0; k < 100; ++k) {
     vpImage<unsigned char> I = made.grey(k);
     for (unsigned int i = 0; i < I.getSize(); ++i)
-      I.bitmap[i] = static_cast<unsigned char>(I.bitmap[i] * (1 - k / 300.));
+      I.bitmap[i] = static_cast<unsigned char>(I.bitmap[i] * (1 - k / 400.));
     int which = 0;
     for (vpCamshiftKalmanTracker *tracker : {&refreshing, &rigid}) {
       if (k == 0)

@@ -41,6 +41,7 @@ vpRect moved(const vpRect &window, double du, double dv)
 
 //! A share of the kernel too small to judge by.
 const double leastVisible = 0.2;
+const double nearlyWhole = 0.98;
 
 //! Trust from which nothing seems to be hidden, or near.
 const double asUsual = 0.98;
@@ -108,7 +109,7 @@ struct vpCamshiftKalmanTracker::Impl {
   {
     const double likeness = std::min(1.0, (candidate.coefficient + coefficient.margin()) / coefficient.mean);
     const double more = (crowdOf(candidate) - crowd.margin()) / crowd.mean;
-    return likeness * candidate.visible / std::max(1.0, more);
+    return likeness / std::max(1.0, more);
   }
 
   //! What comes on slowly and stays is usual after all.
@@ -173,7 +174,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel
   own.coefficient = {1, firstSpread};
   own.crowd = {std::max(own.crowdOf(given), 1e-3), firstSpread};
   own.acceleration = steadiness * own.size();
-  own.filter.init(middle, noiseFloor, own.size()); // a size a frame: nothing is known of its velocity
+  own.filter.init(middle, noiseFloor, startVelocity * own.size());
   return {window, own.model.bhattacharyya(given.shares), true};
 }
 
@@ -198,7 +199,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
   }
   if (recognized) {
     correct(seen);
-    if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted) {
+    if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted && seen.visible > nearlyWhole) {
       m_impl->learnUsual(seen);
       if (m_impl->trust(seen) >= asUsual) {
         adaptSize(seen);
@@ -249,7 +250,7 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::meanShift(const vpIm
   Candidate candidate;
   vpRect search = scaled(moved(start, -offsetU, -offsetV), 1 + 2 * searchMargin);
   for (int i = 0; i < maxIterations; ++i) {
-    candidate.moments = own.sums.moments(I, binOf, own.model.weights(), search);
+    candidate.moments = own.sums.moments(I, binOf, own.model.weights(), search, 1 / (1 + 2 * searchMargin));
     const double du = stride * candidate.moments.meanU, dv = stride * candidate.moments.meanV;
     search = moved(search, du, dv);
     if (std::hypot(du, dv) < convergence) {
@@ -292,10 +293,15 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::bestOfGrownWindow(co
                                                                               const vpRect &window)
 {
   static const double neighbourhood = 3; // windows on a side: what the eight neighbours cover
+  static const double doubt = 3;         // standard deviations of the prediction
   static const int places = 3;
-  static const double enough = 100; // windows on a side
-  const double growth = std::pow(searchGrowth, std::min(m_impl->missed + 1, 50));
-  const vpRect region = scaled(window, std::min(neighbourhood * growth, enough));
+  const double growth = std::pow(searchGrowth, m_impl->missed);
+  const double width =
+      neighbourhood * growth * window.getWidth() + 2 * doubt * m_impl->filter.predictedSigma();
+  const double height =
+      neighbourhood * growth * window.getHeight() + 2 * doubt * m_impl->filter.predictedSigma();
+  vpRect region(0, 0, std::min(width, 3.0 * I.getWidth()), std::min(height, 3.0 * I.getHeight()));
+  region.moveCenter(window.getCenter());
   Candidate best;
   best.window = window;
   for (const vpRect &place :
@@ -319,11 +325,15 @@ void vpCamshiftKalmanTracker::correct(const Candidate &seen)
   static const double covered = 2; // standard deviations
   static const double calming = 0.9;
   Impl &own = *m_impl;
-  const double sigma = measurementSigma(std::max(own.trust(seen), threshold));
+  const double sigma = measurementSigma(std::max(own.trust(seen), threshold)) / seen.visible;
   const vpImagePoint measured = seen.window.getCenter();
   const double innovation = vpImagePoint::distance(measured, own.filter.predicted());
   const double manoeuvre = innovation - covered * std::hypot(sigma, own.filter.predictedSigma());
   own.acceleration = std::max(steadiness * own.size(), calming * own.acceleration);
+  if (own.missed > 0 && manoeuvre > 0) { // no longer on its way: how it came there is unknown
+    own.filter.init(measured, sigma, startVelocity * own.size());
+    return;
+  }
   if (manoeuvre > own.acceleration) {
     own.acceleration = std::min(manoeuvre, own.size());
     own.filter.predict(own.acceleration);

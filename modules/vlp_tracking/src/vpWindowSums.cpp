@@ -6,7 +6,7 @@
 
 BEGIN_VISP_NAMESPACE
 
-void vpKernelAxis::set(double centre, double length, unsigned int pixels)
+void vpKernelAxis::set(double centre, double length, double targetLength, unsigned int pixels)
 {
   static const int whole = 255;
   const double half = length / 2;
@@ -16,8 +16,8 @@ void vpKernelAxis::set(double centre, double length, unsigned int pixels)
   first = clipped(begin);
   middle = centre;
   weights.assign(static_cast<size_t>(clipped(end) - first), 0);
-  double all = 0;
-  sum = mean = 0;
+  double all = 0, chords = 0;
+  sum = targetMean = 0;
   for (int i = begin; i < end; ++i) {
     const double x = i - centre;
     const int weight = static_cast<int>(whole * (1 - x * x / (half * half)));
@@ -25,10 +25,12 @@ void vpKernelAxis::set(double centre, double length, unsigned int pixels)
     if (i >= 0 && i < static_cast<int>(pixels)) {
       weights[static_cast<size_t>(i - first)] = weight;
       sum += weight;
-      mean += weight * x;
+      const double chord = std::sqrt(std::max(0.0, 1 - 4 * x * x / (targetLength * targetLength)));
+      chords += weight * chord;
+      targetMean += weight * chord * x;
     }
   }
-  mean = sum > 0 ? mean / sum : 0;
+  targetMean = chords > 0 ? targetMean / chords : 0;
   visible = all > 0 ? sum / all : 0;
 }
 
@@ -69,8 +71,8 @@ vpWindowMoments vpWindowSums::summedUp(const std::vector<std::uint64_t> &rows) c
   vpWindowMoments moments;
   if (u.zeroth > 0 && v.zeroth > 0) {
     moments.mass = u.zeroth / (255 * m_across.sum * m_down.sum);
-    moments.meanU = u.mean() - m_across.mean;
-    moments.meanV = v.mean() - m_down.mean;
+    moments.meanU = u.mean() - m_across.targetMean;
+    moments.meanV = v.mean() - m_down.targetMean;
     moments.sigmaU = u.sigma();
     moments.sigmaV = v.sigma();
   }

@@ -23,11 +23,12 @@ BEGIN_VISP_NAMESPACE
 struct vpKernelAxis {
   int first = 0;            // pixel
   std::vector<int> weights; // of the pixels from the first on, in 255ths
+  double middle = 0;        // of the whole window, pixel
+  double sum = 0;           // of the weights
   double visible = 0;       // share of the kernel that lies inside the picture
-  double mean = 0, sum = 0; // of the part inside: middle (pixels from the window's), weight
-  double middle = 0;        // of the whole window, pixels
+  double targetMean = 0;    // px from the middle: mean under the kernel of the part inside of a disc there
 
-  void set(double centre, double length, unsigned int pixels);
+  void set(double centre, double length, double targetLength, unsigned int pixels);
 };
 
 //! Back projection of a model onto a window, summed up under the kernel.
@@ -57,23 +58,24 @@ public:
                               const vpRect &outer);
 
   /*!
-    Zeroth to second moments. At the border of the picture the kernel loses a part, and its own middle moves
-    inwards; that is taken off the mean, so that a target half outside is not pulled in.
+    Zeroth to second moments. At the border of the picture a target loses a part, and what is left has its
+    mean farther inside; as much as a disc's in the middle of the window would is taken off, so that a target
+    half outside is not pulled in. \e share: of the window's sides that the target has.
   */
   template <class Pixel, class Bins>
   vpWindowMoments moments(const vpImage<Pixel> &I, const Bins &binOf, const vpTargetModel::Weights &weights,
-                          const vpRect &window);
+                          const vpRect &window, double share);
 
 private:
   // Neighbouring pixels mostly fall into the same bin, and would wait for each other's sum.
   using Lanes = std::array<std::array<std::uint64_t, vpColourBins::count>, 4>;
 
   template <class Pixel>
-  void place(const vpImage<Pixel> &I, const vpRect &window)
+  void place(const vpImage<Pixel> &I, const vpRect &window, double share)
   {
     const vpImagePoint centre = window.getCenter();
-    m_across.set(centre.get_u(), window.getWidth(), I.getWidth());
-    m_down.set(centre.get_v(), window.getHeight(), I.getHeight());
+    m_across.set(centre.get_u(), window.getWidth(), share * window.getWidth(), I.getWidth());
+    m_down.set(centre.get_v(), window.getHeight(), share * window.getHeight(), I.getHeight());
   }
   static vpBinShares shares(const Lanes &lanes);
   vpWindowMoments summedUp(const std::vector<std::uint64_t> &rows) const;
@@ -86,7 +88,7 @@ private:
 template <class Pixel, class Bins>
 vpBinShares vpWindowSums::histogram(const vpImage<Pixel> &I, const Bins &binOf, const vpRect &window)
 {
-  place(I, window);
+  place(I, window, 1);
   Lanes lanes{};
   const size_t width = m_across.weights.size();
   const int *across = m_across.weights.data();
@@ -130,9 +132,10 @@ vpBinShares vpWindowSums::histogramAround(const vpImage<Pixel> &I, const Bins &b
 
 template <class Pixel, class Bins>
 vpWindowMoments vpWindowSums::moments(const vpImage<Pixel> &I, const Bins &binOf,
-                                      const vpTargetModel::Weights &weights, const vpRect &window)
+                                      const vpTargetModel::Weights &weights, const vpRect &window,
+                                      double share)
 {
-  place(I, window);
+  place(I, window, share);
   const size_t width = m_across.weights.size();
   m_columns.assign(width, 0);
   m_rows.assign(m_down.weights.size(), 0);

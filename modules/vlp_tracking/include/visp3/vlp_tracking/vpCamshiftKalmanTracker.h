@@ -40,14 +40,15 @@ public:
   int maxIterations = 15;       // of mean shift
   double threshold = 0.5;       // Bhattacharyya coefficient below which the target is not seen
   double regainThreshold = 0.7; // the same for what is found elsewhere, or after the target was not seen
-  double searchGrowth = 1.3;    // of the search window's sides, from frame to frame while not seen
+  double searchGrowth = 1.15;   // of the search window's sides, from frame to frame while not seen
   double noiseFloor = 0.5;      // px, measurement sigma of a perfect likeness
   double noiseScale = 4;        // window sizes, measurement sigma where rho is one half
+  double startVelocity = 1;     // window sizes per frame, standard deviation where velocity is not known yet
   double steadiness = 0.005;    // window sizes per frame^2, smallest change of velocity reckoned with
   double sizeRate = 0.1;        // share of a change of size followed in one frame
   double maxSizeChange = 0.03;  // of the window's sides, in one frame
   double trusted = 0.85;        // coefficient from which size and model are adapted
-  double refreshRate = 0.1;     // share of the model replaced at each refresh
+  double refreshRate = 0.2;     // share of the model replaced at each refresh
   int refreshInterval = 5;      // trusted frames
 
   vpCamshiftKalmanTracker();
