@@ -43,6 +43,7 @@ inline vpTargetScene stripedLamp(unsigned int seed)
   vpTargetScene made = scene(seed);
   made.background = {cv::Scalar::all(12), 2, 8};
   made.target = {cv::Scalar::all(200), 0, 8};
+  made.obstacle = {cv::Scalar::all(45), 8, 8}; // exposed so shortly, all but lamps is dark
   made.stripePeriod = 3.5 + 1.5 * seed;
   return made;
 }

@@ -325,9 +325,12 @@ void vpCamshiftKalmanTracker::correct(const Candidate &seen)
   static const double covered = 2; // standard deviations
   static const double calming = 0.9;
   Impl &own = *m_impl;
-  const double sigma = measurementSigma(std::max(own.trust(seen), threshold)) / seen.visible;
   const vpImagePoint measured = seen.window.getCenter();
   const double innovation = vpImagePoint::distance(measured, own.filter.predicted());
+  double sigma = measurementSigma(std::max(own.trust(seen), threshold)) / seen.visible;
+  if (innovation > own.size()) { // farther than anything hidden could move the middle of the rest
+    sigma = std::min(sigma, 0.25 * own.size());
+  }
   const double manoeuvre = innovation - covered * std::hypot(sigma, own.filter.predictedSigma());
   own.acceleration = std::max(steadiness * own.size(), calming * own.acceleration);
   if (own.missed > 0 && manoeuvre > 0) { // no longer on its way: how it came there is unknown

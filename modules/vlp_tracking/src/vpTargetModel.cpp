@@ -49,26 +49,6 @@ void spread(vpBinShares &shares, int first, int step, int count, bool circular)
   }
 }
 
-vpBinShares smoothed(vpBinShares shares, bool colour)
-{
-  static const int rounds = 3; // each adds a variance of half a bin: 10 grey levels together
-  if (!colour) {
-    for (int k = 0; k < rounds; ++k) {
-      spread(shares, 0, 1, vpGreyBins::count, false);
-    }
-    return shares;
-  }
-  using Bins = vpColourBins; // coarse bins: one round
-  for (int level = 0; level < Bins::saturations; ++level) {
-    spread(shares, level, Bins::saturations, Bins::hues, true);
-  }
-  for (int hue = 0; hue < Bins::hues; ++hue) {
-    spread(shares, hue * Bins::saturations, 1, Bins::saturations, false);
-  }
-  spread(shares, Bins::hues * Bins::saturations, 1, Bins::intensities, false);
-  return shares;
-}
-
 void approach(vpBinShares &shares, const vpBinShares &goal, double rate)
 {
   for (size_t bin = 0; bin < shares.size(); ++bin) {
@@ -90,18 +70,79 @@ const vpColourBins::Table &vpColourBins::table()
   return bins;
 }
 
+vpBinShares vpTargetModel::smoothed(const vpBinShares &shares) const
+{
+  vpBinShares result{};
+  if (!m_colour) {
+    for (int from = 0; from < vpGreyBins::count; ++from) {
+      for (int to = 0; shares[from] > 0 && to < vpGreyBins::count; ++to) {
+        result[to] += shares[from] * m_blur[from][to];
+      }
+    }
+    return result;
+  }
+  using Bins = vpColourBins;
+  result = shares;
+  for (int level = 0; level < Bins::saturations; ++level) {
+    spread(result, level, Bins::saturations, Bins::hues, true);
+  }
+  for (int hue = 0; hue < Bins::hues; ++hue) {
+    spread(result, hue * Bins::saturations, 1, Bins::saturations, false);
+  }
+  spread(result, Bins::hues * Bins::saturations, 1, Bins::intensities, false);
+  return result;
+}
+
+void vpTargetModel::setSmoothing(double greyLevels)
+{
+  const double sigma = greyLevels / vpGreyBins::width;
+  for (int from = 0; from < vpGreyBins::count; ++from) {
+    double sum = 0;
+    for (int to = 0; to < vpGreyBins::count; ++to) {
+      m_blur[from][to] = std::exp(-0.5 * (to - from) * (to - from) / (sigma * sigma));
+      sum += m_blur[from][to];
+    }
+    for (double &share : m_blur[from]) {
+      share /= sum;
+    }
+  }
+}
+
+//! Mean difference of what tells the target from its surroundings and their mean.
+double vpTargetModel::contrast() const
+{
+  double surroundings = 0, sum = 0, weight = 0;
+  for (int bin = 0; bin < vpGreyBins::count; ++bin) {
+    surroundings += m_surroundings[bin] * bin;
+  }
+  for (int bin = 0; bin < vpGreyBins::count; ++bin) {
+    sum += m_weights[bin] * m_target[bin] * std::abs(bin - surroundings);
+    weight += m_weights[bin] * m_target[bin];
+  }
+  return weight > 0 ? vpGreyBins::width * sum / weight : 0;
+}
+
 void vpTargetModel::learn(bool colour, const vpBinShares &target, const vpBinShares &surroundings)
 {
+  static const double least = 10; // grey levels
+  static const double ofContrast = 0.15;
   m_colour = colour;
-  m_target = smoothed(target, colour);
-  m_surroundings = smoothed(surroundings, colour);
+  setSmoothing(least);
+  m_target = smoothed(target);
+  m_surroundings = smoothed(surroundings);
   weigh();
+  if (!colour) {
+    setSmoothing(std::max(least, ofContrast * contrast()));
+    m_target = smoothed(target);
+    m_surroundings = smoothed(surroundings);
+    weigh();
+  }
 }
 
 void vpTargetModel::refresh(const vpBinShares &target, const vpBinShares &surroundings, double rate)
 {
-  approach(m_target, smoothed(target, m_colour), rate);
-  approach(m_surroundings, smoothed(surroundings, m_colour), rate);
+  approach(m_target, smoothed(target), rate);
+  approach(m_surroundings, smoothed(surroundings), rate);
   weigh();
 }
 
@@ -135,7 +176,7 @@ double vpTargetModel::mass(const vpBinShares &shares) const
 
 double vpTargetModel::bhattacharyya(const vpBinShares &candidate) const
 {
-  const vpBinShares seen = smoothed(candidate, m_colour);
+  const vpBinShares seen = smoothed(candidate);
   const double whole = mass(m_target);
   const double scale = std::sqrt(whole * std::max(whole, mass(seen)));
   double sum = 0;

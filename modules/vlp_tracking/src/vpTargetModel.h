@@ -19,6 +19,7 @@ BEGIN_VISP_NAMESPACE
 */
 struct vpGreyBins {
   static const int count = 32;
+  static const int width = 8; // grey levels
   int operator()(unsigned char grey) const { return grey >> 3; }
 };
 
@@ -50,7 +51,8 @@ using vpBinShares = std::array<double, vpColourBins::count>;
   are all over a window, and would pull more than they tell.
 
   The histograms are smoothed over neighbouring bins: a stripe that meets the lines at another phase has other
-  grey levels, but not far from those before.
+  grey levels, all of them between those of the lit lamp and of the dark. So grey values are smoothed by a
+  share of what the target differs from its surroundings: little where that is little.
 */
 class vpTargetModel
 {
@@ -76,9 +78,13 @@ public:
   double bhattacharyya(const vpBinShares &candidate) const;
 
 private:
+  vpBinShares smoothed(const vpBinShares &shares) const;
+  void setSmoothing(double greyLevels);
+  double contrast() const; // grey levels
   void weigh();
 
   bool m_colour = false;
+  std::array<std::array<double, vpGreyBins::count>, vpGreyBins::count> m_blur{}; // each bin's, onto others
   vpBinShares m_target{};
   vpBinShares m_surroundings{};
   Weights m_weights{};

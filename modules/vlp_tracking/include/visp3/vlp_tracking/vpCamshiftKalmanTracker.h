@@ -38,7 +38,7 @@ public:
   double searchMargin = 0.15;   // on each side of the window, as a share of it, for mean shift
   double convergence = 0.2;     // px, the move at which mean shift rests
   int maxIterations = 15;       // of mean shift
-  double threshold = 0.5;       // Bhattacharyya coefficient below which the target is not seen
+  double threshold = 0.6;       // Bhattacharyya coefficient below which the target is not seen
   double regainThreshold = 0.7; // the same for what is found elsewhere, or after the target was not seen
   double searchGrowth = 1.15;   // of the search window's sides, from frame to frame while not seen
   double noiseFloor = 0.5;      // px, measurement sigma of a perfect likeness
