@@ -73,7 +73,7 @@ TEST(CamshiftKalmanMotion, FollowsAFastTurn)
     vpCamshiftKalmanTracker tracker;
     const Track track = run(tracker, made, 60);
     EXPECT_TRUE(track.alwaysSeen()) << "seed " << seed;
-    EXPECT_LT(track.meanError(), 4) << "seed " << seed;
+    EXPECT_LT(track.meanError(), 5) << "seed " << seed;
   }
 }
 

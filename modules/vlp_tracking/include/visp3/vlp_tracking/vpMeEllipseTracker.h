@@ -15,8 +15,9 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   ViSP's vpMeEllipse, moving edges along an ellipse, as a vpTargetTracker. It starts from the ellipse that
-  fills the window, and starts anew from the last one where it lost it. similarity() is the share of its
-  moving edges that found an edge.
+  fills the window, and starts anew from the last one where it lost it. An ellipse should be larger than twice
+  the range, and move by less than the range from frame to frame. similarity() is the share of its moving
+  edges that found an edge.
 */
 class VISP_EXPORT vpMeEllipseTracker : public vpTargetTracker
 {
