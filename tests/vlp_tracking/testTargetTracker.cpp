@@ -23,7 +23,7 @@ vpTargetScene disc()
 {
   vpTargetScene made = scene(1);
   made.size = 70;
-  made.background.sigma = 5;
+  made.background.sigma = made.target.sigma = 5;
   made.path = [](int k) { return Eigen::Vector2d(100.3 + 2.2 * k, 120.4 + 0.7 * k); };
   return made;
 }

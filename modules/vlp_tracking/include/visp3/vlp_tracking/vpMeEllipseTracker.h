@@ -23,7 +23,7 @@ class VISP_EXPORT vpMeEllipseTracker : public vpTargetTracker
 {
 public:
   unsigned int range = 15; // px, to each side of the ellipse, in which an edge is sought
-  double sampleStep = 4;   // px, between moving edges
+  double sampleStep = 8;   // px, between moving edges
   double threshold = 5000; // likelihood of an edge, as vpMe has it
   double leastFound = 0.3; // share of the moving edges below which the target counts as not seen
 
