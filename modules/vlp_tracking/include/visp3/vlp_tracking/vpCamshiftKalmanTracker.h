@@ -1,0 +1,100 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpCamshiftKalmanTracker_h
+#define vpCamshiftKalmanTracker_h
+
+#include <memory>
+
+#include <visp3/vlp_tracking/vpTargetTracker.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  The improved Camshift-Kalman tracker of section 2.1.2 of the paper: Camshift says where the target is in a
+  picture, the Bhattacharyya coefficient of what is there and the target says how far to believe it, and a
+  Kalman filter of constant velocity makes the estimate of both.
+
+  A target is known by its histogram: of grey values in grey pictures, of hue and saturation in colour
+  pictures. What its surroundings have as much of does not count. In each picture:
+  1. The Kalman filter predicts the window.
+  2. Mean shift moves it over the back projection of the histogram until it rests.
+  3. The Bhattacharyya coefficient rho compares what it holds with the target. Below \e threshold the eight
+     windows around the prediction are tried, and the best one counts; then a search window that grows from
+     frame to frame while the target is not seen.
+  4. Seen, the coefficient becomes the measurement noise, measurementSigma(), of the Kalman filter's
+  correction; the window takes over the size of what is in it; where all is trusted, the histogram is
+  refreshed slowly. Not seen, the prediction stands, and is less certain with each frame.
+
+  The unit of time is one frame: with a frame dropped, the target seems to jump, which the search covers.
+
+  A target whose histogram is that of its surroundings cannot be told from them; the window then stays about
+  where it is, and similarity() means little. Pictures of colours and grey ones are not to be mixed.
+*/
+class VISP_EXPORT vpCamshiftKalmanTracker : public vpTargetTracker
+{
+public:
+  double searchMargin = 0.15;   // on each side of the window, as a share of it, for mean shift
+  double convergence = 0.2;     // px, the move at which mean shift rests
+  int maxIterations = 15;       // of mean shift
+  double threshold = 0.6;       // Bhattacharyya coefficient below which the target is not seen
+  double regainThreshold = 0.7; // the same for what is found elsewhere, or after the target was not seen
+  double searchGrowth = 1.15;   // of the search window's sides, from frame to frame while not seen
+  double noiseFloor = 0.5;      // px, measurement sigma of a perfect likeness
+  double noiseScale = 4;        // window sizes, measurement sigma where rho is one half
+  double startVelocity = 1;     // window sizes per frame, standard deviation where velocity is not known yet
+  double steadiness = 0.005;    // window sizes per frame^2, smallest change of velocity reckoned with
+  double sizeRate = 0.1;        // share of a change of size followed in one frame
+  double maxSizeChange = 0.03;  // of the window's sides, in one frame
+  double trusted = 0.85;        // coefficient from which size and model are adapted
+  double refreshRate = 0.2;     // share of the model replaced at each refresh
+  int refreshInterval = 5;      // trusted frames
+
+  vpCamshiftKalmanTracker();
+  ~vpCamshiftKalmanTracker() override;
+
+  /*!
+    Standard deviation of a measured position, px, from the coefficient: ours, since the paper does not give
+    its function.
+    \f[ \sigma(\rho) = noiseFloor + noiseScale \; s \; \frac{1 - \rho}{\rho} \f]
+    with the window's size s, the root of its area; infinite (no correction) below \e threshold.
+  */
+  double measurementSigma(double rho) const;
+
+  vpImagePoint velocity() const; // px per frame, as estimated
+  double positionSigma() const;  // px, of the estimated position
+
+protected:
+  Sighting begin(const vpImage<unsigned char> &I, const vpRect &window) override;
+  Sighting begin(const vpImage<vpRGBa> &I, const vpRect &window) override;
+  Sighting follow(const vpImage<unsigned char> &I) override;
+  Sighting follow(const vpImage<vpRGBa> &I) override;
+
+private:
+  struct Candidate;
+  struct Impl;
+
+  template <class Pixel>
+  Sighting beginWith(const vpImage<Pixel> &I, const vpRect &window);
+  template <class Pixel>
+  Sighting followIn(const vpImage<Pixel> &I);
+
+  vpRect predictWindow();
+  template <class Pixel>
+  Candidate meanShift(const vpImage<Pixel> &I, const vpRect &start);
+  template <class Pixel>
+  Candidate bestOfEightNeighbours(const vpImage<Pixel> &I, const vpRect &window);
+  template <class Pixel>
+  Candidate bestOfGrownWindow(const vpImage<Pixel> &I, const vpRect &window);
+  void correct(const Candidate &seen);
+  void adaptSize(const Candidate &seen);
+  template <class Pixel>
+  void refreshModel(const vpImage<Pixel> &I, const Candidate &seen);
+
+  std::unique_ptr<Impl> m_impl;
+};
+
+END_VISP_NAMESPACE
+
+#endif

@@ -1,0 +1,395 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_tracking/vpCamshiftKalmanTracker.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include <visp3/core/vpException.h>
+
+#include "vpGrownSearch.h"
+#include "vpPositionFilter.h"
+#include "vpTargetModel.h"
+#include "vpWindowSums.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+template <class Pixel>
+auto binsOf(const vpImage<Pixel> &)
+{
+  return std::conditional_t<std::is_same_v<Pixel, vpRGBa>, vpColourBins, vpGreyBins>();
+}
+
+//! About the same middle.
+vpRect scaled(const vpRect &window, double factor)
+{
+  vpRect result(0, 0, window.getWidth() * factor, window.getHeight() * factor);
+  result.moveCenter(window.getCenter());
+  return result;
+}
+
+vpRect moved(const vpRect &window, double du, double dv)
+{
+  return vpRect(window.getLeft() + du, window.getTop() + dv, window.getWidth(), window.getHeight());
+}
+
+//! A share of the kernel too small to judge by.
+const double leastVisible = 0.2;
+const double nearlyWhole = 0.98;
+
+//! Trust from which nothing seems to be hidden, or near.
+const double asUsual = 0.98;
+
+const double surroundings = 2; // window sizes on a side
+} // namespace
+
+//! Where mean shift came to rest, and what is there.
+struct vpCamshiftKalmanTracker::Candidate {
+  vpRect window;
+  double coefficient = 0;
+  double visible = 0; // share of the window, under the kernel
+  vpBinShares shares{};
+  vpWindowMoments moments; // over the search window
+};
+
+struct vpCamshiftKalmanTracker::Impl {
+  //! Of the target when its window was given, as shares of the window's size.
+  struct Reference {
+    double offsetU = 0, offsetV = 0; // of the window's middle from the middle of the back projection
+    double sigmaU = 0, sigmaV = 0;   // spread of the back projection
+    double width = 0, height = 0;    // px
+  };
+
+  //! Running mean of a figure, and of how far it strays from it: stripes that change their phase make some.
+  struct Usual {
+    double mean = 0, spread = 0;
+
+    void add(double value, double rate)
+    {
+      spread += rate * (std::abs(value - mean) - spread);
+      mean += rate * (value - mean);
+    }
+    double margin() const { return 2 * spread; }
+  };
+
+  vpTargetModel model;
+  vpPositionFilter filter;
+  vpWindowSums sums;
+  vpGrownSearch grown;
+  Reference reference;
+  Usual coefficient;       // in the frames in which all was well
+  Usual crowd;             // the same, mass in the search window for each of the window
+  double acceleration = 0; // px/frame^2, standard deviation
+  bool colour = false;
+  double width = 0, height = 0;                     // px, of the window
+  unsigned int pictureWidth = 0, pictureHeight = 0; // px
+  int missed = 0;                                   // frames since it was seen
+  int trustedFrames = 0;
+
+  double size() const { return std::sqrt(width * height); }
+
+  double crowdOf(const Candidate &candidate) const
+  {
+    const double inside = model.mass(candidate.shares);
+    return inside > 0 ? candidate.moments.mass / inside : 0;
+  }
+
+  /*!
+    How far a sighting is as usual, 0 to 1. A part of the target may be hidden, or outside the picture; or
+    more of its kind than usual is near, where another target may pass, and what was found may lie between the
+    two.
+  */
+  double trust(const Candidate &candidate) const
+  {
+    const double likeness = std::min(1.0, (candidate.coefficient + coefficient.margin()) / coefficient.mean);
+    const double more = (crowdOf(candidate) - crowd.margin()) / crowd.mean;
+    return likeness / std::max(1.0, more);
+  }
+
+  //! What comes on slowly and stays is usual after all.
+  void learnUsual(const Candidate &seen)
+  {
+    const double rate = trust(seen) >= asUsual ? 0.1 : 0.02; // a frame
+    coefficient.add(seen.coefficient, rate);
+    crowd.add(crowdOf(seen), rate);
+  }
+};
+
+vpCamshiftKalmanTracker::vpCamshiftKalmanTracker() : m_impl(std::make_unique<Impl>()) {}
+
+vpCamshiftKalmanTracker::~vpCamshiftKalmanTracker() = default;
+
+double vpCamshiftKalmanTracker::measurementSigma(double rho) const
+{
+  if (!(rho >= threshold && rho > 0)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return noiseFloor + noiseScale * m_impl->size() * (1 - std::min(rho, 1.0)) / rho;
+}
+
+vpImagePoint vpCamshiftKalmanTracker::velocity() const
+{
+  return m_impl->filter.velocity();
+}
+
+double vpCamshiftKalmanTracker::positionSigma() const
+{
+  return m_impl->filter.positionSigma();
+}
+
+template <class Pixel>
+vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel> &I, const vpRect &window)
+{
+  Impl &own = *m_impl;
+  own = Impl();
+  own.colour = std::is_same_v<Pixel, vpRGBa>;
+  own.pictureWidth = I.getWidth();
+  own.pictureHeight = I.getHeight();
+  own.width = own.reference.width = window.getWidth();
+  own.height = own.reference.height = window.getHeight();
+  const auto binOf = binsOf(I);
+  own.model.learn(own.colour, own.sums.histogram(I, binOf, window),
+                  own.sums.histogramAround(I, binOf, window, scaled(window, surroundings)));
+
+  // The middle of what tells the target from its surroundings need not be that of the window given.
+  static const double farthest = 0.25;
+  static const double firstSpread = 0.01;
+  const Candidate rest = meanShift(I, window);
+  const vpImagePoint middle = window.getCenter(), found = rest.window.getCenter();
+  auto offset = [](double difference, double length) {
+    return std::clamp(difference / length, -farthest, farthest);
+  };
+  own.reference.offsetU = offset(middle.get_u() - found.get_u(), own.width);
+  own.reference.offsetV = offset(middle.get_v() - found.get_v(), own.height);
+  own.reference.sigmaU = rest.moments.sigmaU / own.width;
+  own.reference.sigmaV = rest.moments.sigmaV / own.height;
+  Candidate given = rest;
+  given.shares = own.sums.histogram(I, binOf, window);
+  own.coefficient = {1, firstSpread};
+  own.crowd = {std::max(own.crowdOf(given), 1e-3), firstSpread};
+  own.acceleration = steadiness * own.size();
+  own.filter.init(middle, noiseFloor, startVelocity * own.size());
+  return {window, own.model.bhattacharyya(given.shares), true};
+}
+
+template <class Pixel>
+vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel> &I)
+{
+  if (m_impl->colour != std::is_same_v<Pixel, vpRGBa>) {
+    throw vpException(vpException::badValue,
+                      m_impl->colour ? "track: the picture is grey, expected colours as in initTracking()"
+                                     : "track: the picture has colours, expected grey as in initTracking()");
+  }
+  const vpRect predicted = predictWindow();
+  Candidate seen = meanShift(I, predicted);
+  bool recognized = seen.coefficient >= (m_impl->missed == 0 ? threshold : regainThreshold);
+  if (!recognized) {
+    seen = bestOfEightNeighbours(I, predicted);
+    recognized = seen.coefficient >= regainThreshold;
+  }
+  if (!recognized) {
+    seen = bestOfGrownWindow(I, predicted);
+    recognized = seen.coefficient >= regainThreshold;
+  }
+  if (recognized) {
+    correct(seen);
+    if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted && seen.visible > nearlyWhole) {
+      m_impl->learnUsual(seen);
+      if (m_impl->trust(seen) >= asUsual) {
+        adaptSize(seen);
+        refreshModel(I, seen);
+      }
+    }
+    m_impl->missed = 0;
+  } else {
+    m_impl->filter.coast();
+    ++m_impl->missed;
+  }
+  vpRect window(0, 0, m_impl->width, m_impl->height);
+  window.moveCenter(m_impl->filter.position());
+  return {window, seen.coefficient, recognized};
+}
+
+//! A target that left the picture is expected where it left: its velocity ends half a window outside.
+vpRect vpCamshiftKalmanTracker::predictWindow()
+{
+  Impl &own = *m_impl;
+  auto predict = [&own] { return own.filter.predict(own.acceleration); };
+  vpImagePoint middle = predict();
+  auto reachable = [](double x, double length, unsigned int pixels) {
+    return std::clamp(x, -0.5 * length, pixels + 0.5 * length);
+  };
+  const vpImagePoint nearest(reachable(middle.get_v(), own.height, own.pictureHeight),
+                             reachable(middle.get_u(), own.width, own.pictureWidth));
+  if (nearest != middle) {
+    own.filter.rest(nearest);
+    middle = predict();
+  }
+  vpRect window(0, 0, own.width, own.height);
+  window.moveCenter(middle);
+  return window;
+}
+
+template <class Pixel>
+vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::meanShift(const vpImage<Pixel> &I,
+                                                                      const vpRect &start)
+{
+  // Under a kernel that falls off, the mean of a target aside of the middle comes out nearer to it than the
+  // target is, by about a third: steps are that much longer.
+  static const double stride = 1.5;
+  Impl &own = *m_impl;
+  const auto binOf = binsOf(I);
+  const double offsetU = own.reference.offsetU * start.getWidth();
+  const double offsetV = own.reference.offsetV * start.getHeight();
+  Candidate candidate;
+  vpRect search = scaled(moved(start, -offsetU, -offsetV), 1 + 2 * searchMargin);
+  for (int i = 0; i < maxIterations; ++i) {
+    candidate.moments = own.sums.moments(I, binOf, own.model.weights(), search, 1 / (1 + 2 * searchMargin));
+    const double du = stride * candidate.moments.meanU, dv = stride * candidate.moments.meanV;
+    search = moved(search, du, dv);
+    if (std::hypot(du, dv) < convergence) {
+      break;
+    }
+  }
+  candidate.window = moved(scaled(search, 1 / (1 + 2 * searchMargin)), offsetU, offsetV);
+  candidate.shares = own.sums.histogram(I, binOf, candidate.window);
+  candidate.visible = own.sums.visible();
+  candidate.coefficient = candidate.visible < leastVisible ? 0 : own.model.bhattacharyya(candidate.shares);
+  return candidate;
+}
+
+template <class Pixel>
+vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::bestOfEightNeighbours(const vpImage<Pixel> &I,
+                                                                                  const vpRect &window)
+{
+  double highest = -1;
+  vpRect best;
+  for (int row = -1; row <= 1; ++row) {
+    for (int column = -1; column <= 1; ++column) {
+      if (row == 0 && column == 0) {
+        continue;
+      }
+      const vpRect neighbour = moved(window, column * window.getWidth(), row * window.getHeight());
+      const vpBinShares shares = m_impl->sums.histogram(I, binsOf(I), neighbour);
+      const double coefficient =
+          m_impl->sums.visible() < leastVisible ? 0 : m_impl->model.bhattacharyya(shares);
+      if (coefficient > highest) {
+        highest = coefficient;
+        best = neighbour;
+      }
+    }
+  }
+  return meanShift(I, best);
+}
+
+template <class Pixel>
+vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::bestOfGrownWindow(const vpImage<Pixel> &I,
+                                                                              const vpRect &window)
+{
+  static const double neighbourhood = 3; // windows on a side: what the eight neighbours cover
+  static const double doubt = 3;         // standard deviations of the prediction
+  static const int places = 3;
+  const double growth = std::pow(searchGrowth, m_impl->missed);
+  const double width =
+      neighbourhood * growth * window.getWidth() + 2 * doubt * m_impl->filter.predictedSigma();
+  const double height =
+      neighbourhood * growth * window.getHeight() + 2 * doubt * m_impl->filter.predictedSigma();
+  vpRect region(0, 0, std::min(width, 3.0 * I.getWidth()), std::min(height, 3.0 * I.getHeight()));
+  region.moveCenter(window.getCenter());
+  Candidate best;
+  best.window = window;
+  for (const vpRect &place :
+       m_impl->grown.find(I, binsOf(I), m_impl->model.weights(), region, window, places)) {
+    const Candidate candidate = meanShift(I, place);
+    if (candidate.coefficient > best.coefficient) {
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+/*!
+  What a sighting that is not as usual may be off by, its noise covers. An innovation beyond that, and beyond
+  what the prediction's own doubt covers, is the target's: it changes its velocity, and the prediction is made
+  again with as much process noise, which then calms down slowly. So a target that goes straight is not pulled
+  off by what hides half of it, and one that turns is followed.
+*/
+void vpCamshiftKalmanTracker::correct(const Candidate &seen)
+{
+  static const double covered = 2; // standard deviations
+  static const double calming = 0.9;
+  Impl &own = *m_impl;
+  const vpImagePoint measured = seen.window.getCenter();
+  const double innovation = vpImagePoint::distance(measured, own.filter.predicted());
+  double sigma = measurementSigma(std::max(own.trust(seen), threshold)) / seen.visible;
+  if (innovation > own.size()) { // farther than anything hidden could move the middle of the rest
+    sigma = std::min(sigma, 0.25 * own.size());
+  }
+  const double manoeuvre = innovation - covered * std::hypot(sigma, own.filter.predictedSigma());
+  own.acceleration = std::max(steadiness * own.size(), calming * own.acceleration);
+  if (own.missed > 0 && manoeuvre > 0) { // no longer on its way: how it came there is unknown
+    own.filter.init(measured, sigma, startVelocity * own.size());
+    return;
+  }
+  if (manoeuvre > own.acceleration) {
+    own.acceleration = std::min(manoeuvre, own.size());
+    own.filter.predict(own.acceleration);
+  }
+  own.filter.correct(measured, sigma);
+}
+
+void vpCamshiftKalmanTracker::adaptSize(const Candidate &seen)
+{
+  static const double most = 3; // times the first size, or a part of it
+  Impl &own = *m_impl;
+  auto adapted = [this](double length, double sigma, double referenceSigma, double firstLength) {
+    if (!(sigma > 0 && referenceSigma > 0)) {
+      return length;
+    }
+    const double wanted = std::pow(sigma / length / referenceSigma, sizeRate);
+    const double bounded = std::clamp(wanted, 1 / (1 + maxSizeChange), 1 + maxSizeChange);
+    return std::clamp(length * bounded, std::max(4.0, firstLength / most), firstLength * most);
+  };
+  own.width = adapted(own.width, seen.moments.sigmaU, own.reference.sigmaU, own.reference.width);
+  own.height = adapted(own.height, seen.moments.sigmaV, own.reference.sigmaV, own.reference.height);
+}
+
+template <class Pixel>
+void vpCamshiftKalmanTracker::refreshModel(const vpImage<Pixel> &I, const Candidate &seen)
+{
+  Impl &own = *m_impl;
+  if (++own.trustedFrames % std::max(1, refreshInterval) == 0) {
+    own.model.refresh(seen.shares,
+                      own.sums.histogramAround(I, binsOf(I), seen.window, scaled(seen.window, surroundings)),
+                      refreshRate);
+  }
+}
+
+vpTargetTracker::Sighting vpCamshiftKalmanTracker::begin(const vpImage<unsigned char> &I,
+                                                         const vpRect &window)
+{
+  return beginWith(I, window);
+}
+
+vpTargetTracker::Sighting vpCamshiftKalmanTracker::begin(const vpImage<vpRGBa> &I, const vpRect &window)
+{
+  return beginWith(I, window);
+}
+
+vpTargetTracker::Sighting vpCamshiftKalmanTracker::follow(const vpImage<unsigned char> &I)
+{
+  return followIn(I);
+}
+
+vpTargetTracker::Sighting vpCamshiftKalmanTracker::follow(const vpImage<vpRGBa> &I)
+{
+  return followIn(I);
+}
+
+END_VISP_NAMESPACE
