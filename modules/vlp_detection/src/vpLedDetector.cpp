@@ -175,7 +175,7 @@ vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
   stripeAnalyzer.words = formatsOf(map, rig.shutter);
 }
 
-vpLinePicture vpLedDetector::pictureOf(const vpImage<unsigned char> &I) const
+void vpLedDetector::check(const vpImage<unsigned char> &I) const
 {
   if (I.getWidth() != m_rig.width || I.getHeight() != m_rig.height) {
     std::ostringstream message;
@@ -183,18 +183,19 @@ vpLinePicture vpLedDetector::pictureOf(const vpImage<unsigned char> &I) const
             << " x " << m_rig.height << " as the rig's camera says";
     throw vpException(vpException::dimensionError, message.str());
   }
-  return vpLinePicture(I, m_rig.shutter.alongColumns());
 }
 
 bool vpLedDetector::detect(const vpImage<unsigned char> &I)
 {
-  const vpLinePicture picture = pictureOf(I);
+  check(I);
+  const vpLinePicture picture(I, m_rig.shutter.alongColumns());
   return observe(picture, roiDetector.detect(picture.grey));
 }
 
 bool vpLedDetector::detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows)
 {
-  const vpLinePicture picture = pictureOf(I);
+  check(I);
+  const vpLinePicture picture(I, m_rig.shutter.alongColumns());
   std::vector<vpLedRoi> rois;
   for (const cv::Rect &window : joined(linesOf(windows, picture))) {
     for (vpLedRoi &roi : roiDetector.detect(picture.grey, window)) {

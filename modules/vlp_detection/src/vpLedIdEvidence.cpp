@@ -32,6 +32,9 @@ bool vpLedIdEvidence::agrees(const vpStripeFeatures &seen) const
   auto near = [this](double a, double sigma, double b, double other) {
     return std::abs(a - b) < gate * std::hypot(sigma, other);
   };
+  if (m_frames == 0 || !saysSomething(seen)) {
+    return true;
+  }
   return seen.signal == m_features.signal && seen.chips == m_features.chips &&
          near(seen.frequency, seen.frequencySigma, m_features.frequency, m_features.frequencySigma) &&
          (seen.signal == Signal::coded ||

@@ -20,8 +20,15 @@ const int known = 3;       // frames after which a lamp's place and size are its
 const double memory = 0.03; // share of the latest frame in a running mean: slower than people walk
 const int patience = 60;   // frames in a row that it takes to believe that a lamp has become smaller
 
-//! False where it is not in front of the camera.
-bool pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &cMw, const vpVlpRig &rig, Eigen::Vector2d &p)
+Eigen::Vector2d seenExtent(const vpLampOutline &outline)
+{
+  const Eigen::Vector4d box = outline.box();
+  return {box(2) - box(0), box(3) - box(1)};
+}
+} // namespace
+
+bool vpLampTrust::pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &cMw, const vpVlpRig &rig,
+                          Eigen::Vector2d &pixel)
 {
   Eigen::Vector3d c;
   for (unsigned int i = 0; i < 3; ++i) {
@@ -30,16 +37,9 @@ bool pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &cMw, const
   if (!(c.z() > 1e-3)) {
     return false;
   }
-  vpMeterPixelConversion::convertPoint(rig.camera, c.x() / c.z(), c.y() / c.z(), p.x(), p.y());
+  vpMeterPixelConversion::convertPoint(rig.camera, c.x() / c.z(), c.y() / c.z(), pixel.x(), pixel.y());
   return true;
 }
-
-Eigen::Vector2d seenExtent(const vpLampOutline &outline)
-{
-  const Eigen::Vector4d box = outline.box();
-  return {box(2) - box(0), box(3) - box(1)};
-}
-} // namespace
 
 Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMatrix &wMb,
                                       const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime)

@@ -14,7 +14,7 @@
 BEGIN_VISP_NAMESPACE
 
 vpVlpLocalizer::vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map)
-    : detector(rig, map), matcher(rig, map), filter(rig), m_rig(rig), m_map(map),
+    : tracker(rig, map), matcher(rig, map), filter(rig), m_rig(rig), m_map(map),
       m_lineTime(rig.lineTiming().meanLineTime()),
       m_trust(std::make_unique<vpLampTrust>())
 {
@@ -35,9 +35,9 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
     return location;
   }
 
-  // Sections 2.1.1 and 2.1.2: LED-ROI, outline, stripe features and LED-ID of every lamp-like region.
-  detector.detect(frame.I);
-  location.observations = detector.observations();
+  // Sections 2.1.1 and 2.1.2: LED-ROI, outline, stripe features and LED-ID of every lamp-like region, in the
+  // windows of the lamps that are followed and where new ones are searched for.
+  location.observations = look(frame);
 
   // Lamps whose place in the picture can be relied on, and whose id can, once places have told apart what
   // stripes do not: lamps that share an identifier, a lamp and its reflection.
@@ -79,10 +79,57 @@ bool vpVlpLocalizer::inOrder(double time)
   }
   if (m_lastFrame && time <= *m_lastFrame) {
     filter.stop();
+    tracker.reset();
     m_lastPose.reset();
   }
   m_lastFrame = time;
   return true;
+}
+
+const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &frame)
+{
+  if (tracking) {
+    return tracker.track(frame, expectedWindows(frame.timestamp));
+  }
+  tracker.detector.detect(frame.I);
+  return tracker.detector.observations();
+}
+
+//! Where the picture shows the map's lamps, by the pose that the filter expects.
+std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
+{
+  std::vector<vpRect> windows;
+  if (!filter.started()) {
+    return windows;
+  }
+  static const double readout = 0.03, farthest = 3; // s, of a frame, about; heights of a lamp above the camera
+  static const double doubtful = 0.1;               // rad: the lamps are then anywhere
+  const vpVlpFix fix = filter.fixAt(time + readout);
+  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
+               turn = std::sqrt(fix.covariance(5, 5));
+  for (const vpLamp &lamp : m_map.lamps) {
+    const double height = lamp.position.z() - fix.wMc[2][3],
+                 apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
+    if (!(height > 0 && apart < farthest * height && turn + place / height < doubtful)) {
+      continue;
+    }
+    Eigen::Vector2d middle;
+    const Eigen::Vector2d extent =
+        vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
+    if (!vpLampTrust::pixelOf(lamp.position, fix.wMc.inverse(), m_rig, middle)) {
+      continue;
+    }
+    static const double sigmas = 3, around = 0.7; // of the extent, on each side
+    const double doubt = sigmas * m_rig.camera.get_px() * (place + turn * apart) / height;
+    const Eigen::Vector2d half = (std::isfinite(lamp.size) ? 0.5 + around : 0.2) * extent +
+                                 Eigen::Vector2d(doubt, doubt);
+    const Eigen::Vector2d least = (middle - half).cwiseMax(0.0),
+                          most = (middle + half).cwiseMin(Eigen::Vector2d(m_rig.width - 1, m_rig.height - 1));
+    if ((least.array() < most.array()).all()) {
+      windows.emplace_back(least.x(), least.y(), most.x() - least.x(), most.y() - least.y());
+    }
+  }
+  return windows;
 }
 
 //! The pose of these lamps alone, of two of them or of all that agree with each other.

@@ -91,6 +91,7 @@ struct vpCamshiftKalmanTracker::Impl {
   unsigned int pictureWidth = 0, pictureHeight = 0; // px
   int missed = 0;                                   // frames since it was seen
   int trustedFrames = 0;
+  bool predicted = false; // since it began
 
   double size() const { return std::sqrt(width * height); }
 
@@ -187,6 +188,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
                                      : "track: the picture has colours, expected grey as in initTracking()");
   }
   const vpRect predicted = predictWindow();
+  m_impl->predicted = true;
   Candidate seen = meanShift(I, predicted);
   bool recognized = seen.coefficient >= (m_impl->missed == 0 ? threshold : regainThreshold);
   if (!recognized) {
@@ -198,7 +200,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
     recognized = seen.coefficient >= regainThreshold;
   }
   if (recognized) {
-    correct(seen);
+    correctBy(seen);
     if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted && seen.visible > nearlyWhole) {
       m_impl->learnUsual(seen);
       if (m_impl->trust(seen) >= asUsual) {
@@ -320,10 +322,8 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::bestOfGrownWindow(co
   again with as much process noise, which then calms down slowly. So a target that goes straight is not pulled
   off by what hides half of it, and one that turns is followed.
 */
-void vpCamshiftKalmanTracker::correct(const Candidate &seen)
+void vpCamshiftKalmanTracker::correctBy(const Candidate &seen)
 {
-  static const double covered = 2; // standard deviations
-  static const double calming = 0.9;
   Impl &own = *m_impl;
   const vpImagePoint measured = seen.window.getCenter();
   const double innovation = vpImagePoint::distance(measured, own.filter.predicted());
@@ -331,6 +331,15 @@ void vpCamshiftKalmanTracker::correct(const Candidate &seen)
   if (innovation > own.size()) { // farther than anything hidden could move the middle of the rest
     sigma = std::min(sigma, 0.25 * own.size());
   }
+  correctBy(measured, sigma);
+}
+
+void vpCamshiftKalmanTracker::correctBy(const vpImagePoint &measured, double sigma)
+{
+  static const double covered = 2; // standard deviations
+  static const double calming = 0.9;
+  Impl &own = *m_impl;
+  const double innovation = vpImagePoint::distance(measured, own.filter.predicted());
   const double manoeuvre = innovation - covered * std::hypot(sigma, own.filter.predictedSigma());
   own.acceleration = std::max(steadiness * own.size(), calming * own.acceleration);
   if (own.missed > 0 && manoeuvre > 0) { // no longer on its way: how it came there is unknown
@@ -380,6 +389,26 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::begin(const vpImage<unsigned 
 vpTargetTracker::Sighting vpCamshiftKalmanTracker::begin(const vpImage<vpRGBa> &I, const vpRect &window)
 {
   return beginWith(I, window);
+}
+
+//! The target is learned anew, its motion is not.
+vpTargetTracker::Sighting vpCamshiftKalmanTracker::setRight(const vpImage<unsigned char> &I,
+                                                            const vpRect &window)
+{
+  const vpPositionFilter filter = m_impl->filter;
+  const double acceleration = m_impl->acceleration;
+  const int missed = m_impl->missed;
+  const bool moved = m_impl->predicted;
+  const Sighting sighting = beginWith(I, window);
+  if (moved) {
+    m_impl->filter = filter;
+    m_impl->acceleration = acceleration;
+    m_impl->missed = missed;
+    correctBy(window.getCenter(), noiseFloor);
+    m_impl->missed = 0;
+    m_impl->predicted = true;
+  }
+  return sighting;
 }
 
 vpTargetTracker::Sighting vpCamshiftKalmanTracker::follow(const vpImage<unsigned char> &I)

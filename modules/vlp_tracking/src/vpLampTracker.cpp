@@ -70,6 +70,11 @@ vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detect
 vpLampTracker::~vpLampTracker() = default;
 vpLampTracker::vpLampTracker(vpLampTracker &&) noexcept = default;
 
+size_t vpLampTracker::tracks() const
+{
+  return m_tracks.size();
+}
+
 void vpLampTracker::reset()
 {
   m_tracks.clear();

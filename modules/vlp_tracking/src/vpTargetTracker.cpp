@@ -99,7 +99,7 @@ void vpTargetTracker::initTracking(const vpImage<vpRGBa> &I, const vpRect &windo
 }
 
 template <class Pixel>
-bool vpTargetTracker::followChecked(const vpImage<Pixel> &I)
+void vpTargetTracker::checkTracked(const vpImage<Pixel> &I) const
 {
   if (m_width == 0) {
     throw vpException(vpException::notInitialized, "track: no target yet, expected initTracking() before");
@@ -109,6 +109,12 @@ bool vpTargetTracker::followChecked(const vpImage<Pixel> &I)
                                                        std::to_string(m_width) + " x " +
                                                        std::to_string(m_height) + " px as in initTracking()");
   }
+}
+
+template <class Pixel>
+bool vpTargetTracker::followChecked(const vpImage<Pixel> &I)
+{
+  checkTracked(I);
   const Sighting sighting = follow(I);
   m_estimate = sighting.window;
   m_similarity = sighting.similarity;
@@ -123,6 +129,15 @@ bool vpTargetTracker::track(const vpImage<unsigned char> &I)
 bool vpTargetTracker::track(const vpImage<vpRGBa> &I)
 {
   return followChecked(I);
+}
+
+void vpTargetTracker::correct(const vpImage<unsigned char> &I, const vpRect &window)
+{
+  checkTracked(I);
+  checkWindow(I, window);
+  const Sighting sighting = setRight(I, window);
+  m_estimate = sighting.window;
+  m_similarity = sighting.similarity;
 }
 
 vpTargetTracker::Sighting vpTargetTracker::begin(const vpImage<vpRGBa> &I, const vpRect &window)

@@ -56,6 +56,9 @@ public:
   */
   bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows);
 
+  //! \throw vpException (dimensionError) where \e I has not the size that the rig states.
+  void check(const vpImage<unsigned char> &I) const;
+
   //! Every lamp-like region of the last picture, the one with the largest lit area first.
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
@@ -63,7 +66,6 @@ public:
   const vpRowTimeError &rowTimeError() const { return m_rowTimeError; }
 
 private:
-  vpLinePicture pictureOf(const vpImage<unsigned char> &I) const;
   bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
   bool joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
   vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi) const;

@@ -39,6 +39,9 @@ public:
   */
   bool add(const vpStripeFeatures &seen);
 
+  //! Whether a frame may show the lamp that the frames before showed; so may one that says nothing.
+  bool agrees(const vpStripeFeatures &seen) const;
+
   //! Of all frames together; the last frame's where none said anything.
   const vpStripeFeatures &features() const { return m_features; }
 
@@ -48,8 +51,6 @@ public:
   void clear();
 
 private:
-  bool agrees(const vpStripeFeatures &seen) const;
-
   vpStripeFeatures m_features;
   unsigned int m_frames = 0;
 };

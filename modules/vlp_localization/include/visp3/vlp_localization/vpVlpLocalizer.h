@@ -12,11 +12,11 @@
 #include <vector>
 
 #include <visp3/vlp_core/vpVlpFrame.h>
-#include <visp3/vlp_detection/vpLedDetector.h>
 #include <visp3/vlp_localization/vpLampMatcher.h>
 #include <visp3/vlp_localization/vpManyLampSolver.h>
 #include <visp3/vlp_localization/vpTwoLampSolver.h>
 #include <visp3/vlp_localization/vpVlpFilter.h>
+#include <visp3/vlp_tracking/vpLampTracker.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -56,7 +56,7 @@ public:
   bool tracking = true;
   bool compensateShutter = true; // off: all lamps as if seen at the frame's time stamp
   Solver solver = Solver::all;   // of single frames, and of the first pose
-  vpLedDetector detector;
+  vpLampTracker tracker; // its detector: of single frames, too
   vpManyLampSolver manyLamps; // its attitude: mount or free
   vpTwoLampSolver twoLamps;
   vpLampMatcher matcher; // under the mount's attitude, with a map tolerance of its own; free: does not run
@@ -90,6 +90,8 @@ private:
   vpVlpFix correct(vpVlpLocation &location, const std::vector<size_t> &usable);
   void begin(vpVlpLocation &location);
   bool inOrder(double time);
+  const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
+  std::vector<vpRect> expectedWindows(double time) const;
 
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;

@@ -68,6 +68,7 @@ public:
 protected:
   Sighting begin(const vpImage<unsigned char> &I, const vpRect &window) override;
   Sighting begin(const vpImage<vpRGBa> &I, const vpRect &window) override;
+  Sighting setRight(const vpImage<unsigned char> &I, const vpRect &window) override;
   Sighting follow(const vpImage<unsigned char> &I) override;
   Sighting follow(const vpImage<vpRGBa> &I) override;
 
@@ -87,7 +88,8 @@ private:
   Candidate bestOfEightNeighbours(const vpImage<Pixel> &I, const vpRect &window);
   template <class Pixel>
   Candidate bestOfGrownWindow(const vpImage<Pixel> &I, const vpRect &window);
-  void correct(const Candidate &seen);
+  void correctBy(const Candidate &seen);
+  void correctBy(const vpImagePoint &measured, double sigma);
   void adaptSize(const Candidate &seen);
   template <class Pixel>
   void refreshModel(const vpImage<Pixel> &I, const Candidate &seen);

@@ -62,7 +62,7 @@ public:
   void reset();
 
   //! Lamps that are followed, seen in the last frame or not.
-  size_t tracks() const { return m_tracks.size(); }
+  size_t tracks() const;
 
 private:
   struct Track;

@@ -53,6 +53,13 @@ public:
   bool track(const vpImage<unsigned char> &I);
   bool track(const vpImage<vpRGBa> &I);
 
+  /*!
+    Sets right what something else saw better in the picture that track() was given last: the target fills
+    \e window there. Its motion so far is kept where the method knows it.
+    \throw vpException as initTracking() and track().
+  */
+  void correct(const vpImage<unsigned char> &I, const vpRect &window);
+
   //! The part inside the picture of the estimated window; predicted where the target was not seen. Its width
   //! and height are 0 where nothing of it is inside.
   vpRect window() const;
@@ -81,10 +88,13 @@ protected:
   // A method that knows no colours sees the grey values of a colour picture.
   virtual Sighting begin(const vpImage<unsigned char> &I, const vpRect &window) = 0;
   virtual Sighting begin(const vpImage<vpRGBa> &I, const vpRect &window);
+  virtual Sighting setRight(const vpImage<unsigned char> &I, const vpRect &window) { return begin(I, window); }
   virtual Sighting follow(const vpImage<unsigned char> &I) = 0;
   virtual Sighting follow(const vpImage<vpRGBa> &I);
 
 private:
+  template <class Pixel>
+  void checkTracked(const vpImage<Pixel> &I) const;
   template <class Pixel>
   void beginChecked(const vpImage<Pixel> &I, const vpRect &window);
   template <class Pixel>
