@@ -77,29 +77,35 @@ Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMat
   return extent;
 }
 
-std::string vpLampTrust::doubt(const vpLamp &lamp, const vpLampObservation &seen,
-                               const vpVlpFilter::Innovation &innovation,
-                               const Eigen::Vector2d &expectedExtent) const
+std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &seen,
+                                 const Eigen::Vector2d &expectedExtent)
 {
-  static const char *const elsewhere = "not where the robot's motion has it";
-  static const char *const smaller = "smaller than it was: partly hidden";
+  const auto found = m_past.find(lamp.id);
+  if (found == m_past.end() || found->second.frames < known || seen.cut || !(expectedExtent.minCoeff() > 0)) {
+    return "";
+  }
+  Past &past = found->second;
+  const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expectedExtent);
+  static const double coarse = 0.15; // px
+  const Eigen::Vector2d tolerance = sizeTolerance * past.size + coarse * expectedExtent.cwiseInverse();
+  const Eigen::Vector2d more = (size - past.size).cwiseQuotient(tolerance);
+  past.smaller = more.minCoeff() < -1 || seen.outline.shape != past.shape ? past.smaller + 1 : 0;
+  past.larger = more.maxCoeff() > 1 && past.smaller == 0 ? past.larger + 1 : 0;
+  if (past.smaller > patience || past.larger > known) { // so it is, then
+    past.size = size;
+    past.shape = seen.outline.shape;
+    past.smaller = past.larger = 0;
+  }
+  return past.smaller > 0 ? "not as large as it was: partly hidden" : past.larger > 0 ? "larger than it was" : "";
+}
+
+bool vpLampTrust::inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const
+{
   const auto found = m_past.find(lamp.id);
   const bool before = found != m_past.end() && found->second.frames >= known;
   vpVlpFilter::Innovation moved = innovation;
   moved.ray -= before ? found->second.offset : Eigen::Vector2d(0, 0);
-  if (moved.distance(before ? placeTolerance : mapTolerance) > gate * gate) {
-    return elsewhere;
-  }
-  if (before && !seen.cut && expectedExtent.minCoeff() > 0 && found->second.doubts < patience) {
-    const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expectedExtent);
-    static const double coarse = 0.15; // px
-    const Eigen::Vector2d least =
-        found->second.size * (1 - sizeTolerance) - coarse * expectedExtent.cwiseInverse();
-    if ((size.array() < least.array()).any()) {
-      return smaller;
-    }
-  }
-  return "";
+  return moved.distance(before ? placeTolerance : mapTolerance) < gate * gate;
 }
 
 Eigen::Vector2d vpLampTrust::offset(const vpLamp &lamp) const
@@ -118,7 +124,6 @@ void vpLampTrust::believe(const vpLamp &lamp, const vpLampObservation &seen,
 {
   Past &past = m_past[lamp.id];
   ++past.frames;
-  past.doubts = 0;
   const double share = std::max(memory, 1.0 / past.frames);
   past.offset += share * (innovation.ray - past.offset);
   past.doubt = (1 - share) * (1 - share) * past.doubt + share * share * innovation.covariance;
@@ -126,15 +131,11 @@ void vpLampTrust::believe(const vpLamp &lamp, const vpLampObservation &seen,
     const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expectedExtent);
     if (past.size.isZero()) {
       past.size = size;
+      past.shape = seen.outline.shape;
     } else {
       past.size += share * (size - past.size);
     }
   }
-}
-
-void vpLampTrust::doubted(const vpLamp &lamp)
-{
-  ++m_past[lamp.id].doubts;
 }
 
 END_VISP_NAMESPACE

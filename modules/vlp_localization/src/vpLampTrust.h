@@ -22,21 +22,21 @@ class vpLampTrust
 {
 public:
   double mapTolerance = 0.03; // m, how far a lamp that was not seen before may hang from where the map says, sigma
-  double placeTolerance = 0.002; // m, how far one may then seem to move, sigma
-  double sizeTolerance = 0.015;  // share of its extent by which a lamp may seem smaller than it was
+  double placeTolerance = 0.0005; // m, how far one may then seem to move, sigma
+  double sizeTolerance = 0.015;   // share of its extent by which a lamp may seem smaller or larger than it was
   double gate = 4;               // standard deviations
 
-  //! Why not, in a few words; empty where it is to be believed.
-  std::string doubt(const vpLamp &lamp, const vpLampObservation &seen, const vpVlpFilter::Innovation &innovation,
-                    const Eigen::Vector2d &expectedExtent) const;
+  //! Whether it is as large and of the shape as before; else why not, in a few words.
+  std::string changed(const vpLamp &lamp, const vpLampObservation &seen, const Eigen::Vector2d &expectedExtent);
+
+  //! Whether it is where the filter expects it.
+  bool inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const;
 
   //! What it is off by on average, where that is more than chance, normalised units: to be added to its doubt.
   Eigen::Vector2d offset(const vpLamp &lamp) const;
 
   void believe(const vpLamp &lamp, const vpLampObservation &seen, const vpVlpFilter::Innovation &innovation,
                const Eigen::Vector2d &expectedExtent);
-  void doubted(const vpLamp &lamp);
-
   /*!
     Width and height, px, of the picture of a lamp's disc or square as seen from \e wMb by a base that moves at
     \e velocity (m/s along x and y of b, rad/s): lines read while the lamp's picture runs ahead of the readout
@@ -52,7 +52,8 @@ public:
 private:
   struct Past {
     int frames = 0;
-    int doubts = 0;                                    // frames in a row
+    int smaller = 0, larger = 0;                       // frames in a row that it was so
+    vpLampOutline::Shape shape = vpLampOutline::Shape::region;
     Eigen::Vector2d offset = Eigen::Vector2d::Zero();  // normalised units, running mean of the innovations
     Eigen::Matrix2d doubt = Eigen::Matrix2d::Zero();   // of that mean, were it 0
     Eigen::Vector2d size = Eigen::Vector2d::Zero();    // extent over the expected one

@@ -82,7 +82,10 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   sigma.head<3>().setConstant(place);
   sigma(yaw) = turn;
   sigma.segment<2>(roll) =
-      freeAttitude ? Eigen::Vector2d(turn, turn) : Eigen::Vector2d(m_rig.rotationSigma.head<2>());
+      freeAttitude ? Eigen::Vector2d(turn, turn)
+                   : Eigen::Vector2d(m_rig.rotationSigma.head<2>().array().square() + square(m_tiltDoubt))
+                         .cwiseSqrt()
+                         .eval();
   sigma(speedScale) = odometryScale;
   sigma(turnScale) = odometryTurnScale;
   sigma(turnBias) = odometryTurnBias;
@@ -91,6 +94,12 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   m_P = sigma.cwiseAbs2().asDiagonal();
   rouse();
   forgetVelocity();
+}
+
+void vpVlpFilter::doubtClaims()
+{
+  m_tiltDoubt = std::hypot(m_tiltDoubt, claimedTilt);
+  m_placeDoubt = std::hypot(m_placeDoubt, claimedPlace);
 }
 
 void vpVlpFilter::forgetVelocity()
@@ -252,7 +261,7 @@ void vpVlpFilter::addLamp(const vpLampSight &lamp)
   const Eigen::Index n = m_x.size();
   m_x.conservativeResizeLike(Vector::Zero(n + 3));
   m_P.conservativeResizeLike(Matrix::Zero(n + 3, n + 3));
-  m_P.bottomRightCorner<3, 3>().diagonal().setConstant(square(lamp.positionSigma));
+  m_P.bottomRightCorner<3, 3>().diagonal().setConstant(square(placeSigma(lamp)));
   m_lamps.push_back(lamp.id);
 }
 
@@ -285,7 +294,7 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
   if (own >= 0) {
     predicted.H.block<2, 3>(0, own) = -byPlace;
   } else {
-    predicted.ownDoubt = square(lamp.positionSigma) * byPlace * byPlace.transpose();
+    predicted.ownDoubt = square(placeSigma(lamp)) * byPlace * byPlace.transpose();
   }
   return predicted;
 }
@@ -306,7 +315,7 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
 
 void vpVlpFilter::update(const vpLampSight &lamp)
 {
-  if (lamp.positionSigma > 0 && lampIndex(lamp) < 0) {
+  if (placeSigma(lamp) > 0 && lampIndex(lamp) < 0) {
     addLamp(lamp);
   }
   const Predicted predicted = predict(lamp);

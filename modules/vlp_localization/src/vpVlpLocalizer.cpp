@@ -7,11 +7,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "vpLampConsensus.h"
 #include "vpLampNames.h"
 #include "vpLampTrust.h"
 
 BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const char *const misplaced = "not where the robot's motion has it";
+} // namespace
 
 vpVlpLocalizer::vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map)
     : tracker(rig, map), matcher(rig, map), filter(rig), m_rig(rig), m_map(map),
@@ -150,7 +157,7 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   filter.start(location.fix.wMb, location.timestamp);
   *m_trust = vpLampTrust();
   m_trust->mapTolerance = mapTolerance;
-  m_disagreements = 0;
+  m_disagreements = m_contradictions = 0;
   std::vector<size_t> members;
   for (size_t i = 0; i < location.observations.size(); ++i) {
     if (location.observations[i].accepted) {
@@ -192,16 +199,20 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     filter.forgetVelocity();
     location.fix = correct(location, usable);
   }
+  const bool contradictory = contradicts(location, usable);
   const bool few = 2 * accepted() < usable.size(), lost = filter.state(location.fix) == vpVlpFilter::State::lost;
   m_disagreements = few ? m_disagreements : 0;
-  if (!few && !lost) {
+  if (!few && !lost && !contradictory) {
     return;
   }
   std::vector<vpLampObservation> apart = seen;
   const vpVlpFix alone = solve(apart, usable);
   m_disagreements += alone.valid ? 1 : 0;
   static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
-  if (alone.valid && !alone.ambiguous && (lost || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
+  if (alone.valid && !alone.ambiguous && (lost || contradictory || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
+    if (contradictory) {
+      filter.doubtClaims();
+    }
     location.observations = apart;
     location.fix = alone;
     begin(location);
@@ -209,10 +220,39 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     filter.stop();
     location.fix = alone;
     location.observations = apart;
-  } else if (alone.valid) {
+  } else if (alone.valid && few) {
     location.fix = vpVlpFix();
     location.fix.refusal = "the lamps agree with each other, and not with the robot's motion";
   }
+}
+
+/*!
+  Whether lamps contradict the pose and each other, frame after frame: what is left of their innovations once all
+  of them have corrected pose and velocity is more than their own doubt. Then camera and map are not as good as
+  they say. A frame or two of it may be a robot that starts or stops.
+*/
+bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable)
+{
+  static const int often = 6; // frames
+  static const double beyond = 6;
+  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
+  double chiSquare = 0, degrees = 0, apart = 0;
+  for (size_t i : usable) {
+    const vpLampObservation &seen = location.observations[i];
+    apart += seen.remark == misplaced;
+    if (seen.accepted) {
+      vpVlpFilter then = filter;
+      then.advance(timeOf(location, seen));
+      const vpLampSight sight = vpLampSight::from(*lamps[i], seen, m_rig.camera);
+      const Eigen::Vector2d left = then.innovation(sight).ray;
+      chiSquare += left.dot(sight.covariance.inverse() * left);
+      degrees += 2;
+    }
+  }
+  const bool misfit = chiSquare > degrees + beyond * std::sqrt(2 * degrees);
+  const bool now = usable.size() > 2 && (misfit || 2 * apart >= static_cast<double>(usable.size()));
+  m_contradictions = now ? m_contradictions + 1 : std::max(0, m_contradictions - 1);
+  return m_contradictions >= often;
 }
 
 //! Predicts to the frame and lets each lamp correct at the time of its line.
@@ -231,18 +271,19 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
     if (lamp == nullptr) {
       continue;
     }
-    filter.advance(location.timestamp + (compensateShutter ? seen.time : 0));
+    filter.advance(timeOf(location, seen));
     vpLampSight sight = vpLampSight::from(*lamp, seen, m_rig.camera);
     const Eigen::Vector2d offset = m_trust->offset(*lamp);
     sight.covariance += offset * offset.transpose();
     const vpVlpFilter::Innovation innovation = filter.innovation(sight);
     const Eigen::Vector2d extent = 
         vpLampTrust::extentOf(*lamp, filter.now().wMb, filter.velocity(), m_rig, m_lineTime);
-    const std::string doubt = innovation.inFront ? m_trust->doubt(*lamp, seen, innovation, extent)
-                                                 : std::string("behind the camera, by the robot's motion");
-    if (!doubt.empty()) {
-      m_trust->doubted(*lamp);
-      seen.remark = doubt;
+    seen.remark = m_trust->changed(*lamp, seen, extent);
+    if (!seen.remark.empty()) {
+      continue;
+    }
+    if (!innovation.inFront || !m_trust->inPlace(*lamp, innovation)) {
+      seen.remark = misplaced;
       continue;
     }
     m_trust->believe(*lamp, seen, innovation, extent);
@@ -260,6 +301,12 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
   fix.wMc = marked.wMc;
   fix.covariance = marked.covariance;
   return fix;
+}
+
+//! At which a lamp was seen, s.
+double vpVlpLocalizer::timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const
+{
+  return location.timestamp + (compensateShutter ? seen.time : 0);
 }
 
 std::vector<const vpLamp *> vpVlpLocalizer::lampsOf(const std::vector<vpLampObservation> &observations) const

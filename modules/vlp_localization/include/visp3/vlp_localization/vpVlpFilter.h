@@ -5,6 +5,7 @@
 #ifndef vpVlpFilter_h
 #define vpVlpFilter_h
 
+#include <cmath>
 #include <deque>
 #include <string>
 #include <vector>
@@ -72,6 +73,8 @@ public:
   double odometryTurnScale = 0.01;   // of the turn rate's scale
   double odometryTurnBias = 0.002;   // rad/s, of the turn rate's bias
   double sidewaysSpeed = 0.002;      // m/s, standard deviation of the speed sideways, where there is odometry
+  double claimedTilt = 0.004;        // rad, doubtClaims(): standard deviation added to roll and pitch
+  double claimedPlace = 0.002;       // m, likewise to each coordinate of each lamp
   bool freeAttitude = false;         // roll and pitch change, and are as uncertain as the fix at the start
 
   explicit vpVlpFilter(const vpVlpRig &rig);
@@ -118,6 +121,10 @@ public:
   //! The robot may start, stop or turn at any time.
   void rouse() { m_unrest = 1; }
 
+  //! Takes the rig's attitude and the map's places for less certain than they say, by claimedTilt and
+  //! claimedPlace; from the next start() on, since what was estimated before rests on the claims.
+  void doubtClaims();
+
   //! Makes the velocity as uncertain as at the start: the robot has changed its mind.
   void forgetVelocity();
 
@@ -163,6 +170,7 @@ private:
   struct Predicted;
   Predicted predict(const vpLampSight &lamp) const;
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
+  double placeSigma(const vpLampSight &lamp) const { return std::hypot(lamp.positionSigma, m_placeDoubt); }
   void addLamp(const vpLampSight &lamp);
   vpVlpFix fixOf(Index first) const;
   void measure(const Matrix &H, const Vector &innovation, const Matrix &R);
@@ -176,6 +184,8 @@ private:
   Matrix m_P;
   std::vector<std::string> m_lamps; // ids whose errors are states, in their order
   std::deque<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
+  double m_tiltDoubt = 0;            // rad, added to what the rig says of roll and pitch
+  double m_placeDoubt = 0;           // m, added to what the map says of its lamps
   double m_unrest = 1;               // share of the random accelerations
   double m_followed = -1e300; // s, end of the interval whose odometry the velocity is
 };

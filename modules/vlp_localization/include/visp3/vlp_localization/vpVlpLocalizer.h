@@ -88,6 +88,7 @@ private:
   vpVlpFix solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const;
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
   vpVlpFix correct(vpVlpLocation &location, const std::vector<size_t> &usable);
+  bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable);
   void begin(vpVlpLocation &location);
   bool inOrder(double time);
   const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
@@ -95,6 +96,8 @@ private:
 
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
+
+  double timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const;
 
   //! The map's lamp of each, by its id; nullptr: none.
   std::vector<const vpLamp *> lampsOf(const std::vector<vpLampObservation> &observations) const;
@@ -106,7 +109,8 @@ private:
   std::optional<LastPose> m_lastPose;
   std::optional<double> m_lastFrame; // s
   std::unique_ptr<vpLampTrust> m_trust;
-  int m_disagreements = 0; // frames in a row whose lamps agree with each other, and not with the filter
+  int m_contradictions = 0; // frames of late whose lamps contradict what camera and map say of themselves
+  int m_disagreements = 0;  // frames in a row whose lamps agree with each other, and not with the filter
 };
 
 END_VISP_NAMESPACE
