@@ -152,7 +152,7 @@ TEST(CamshiftKalmanMotion, ASimilarTargetPassingByDoesNotStealIt)
 
 TEST(CamshiftKalmanMotion, TheWindowTakesOverTheTargetsSize)
 {
-  for (const double scale : {1.01, 1 / 1.01}) {
+  for (const double scale : {1.01, 1 / 1.01, 1.004, 1 / 1.004}) {
     vpTargetScene made = scene(3);
     made.size = scale > 1 ? 30 : 60;
     made.scalePerFrame = scale;

@@ -85,6 +85,7 @@ struct vpCamshiftKalmanTracker::Impl {
   Reference reference;
   Usual coefficient;       // in the frames in which all was well
   Usual crowd;             // the same, mass in the search window for each of the window
+  Usual extent;            // the same, spread of the back projection, in window sizes
   double acceleration = 0; // px/frame^2, standard deviation
   bool colour = false;
   double width = 0, height = 0;                     // px, of the window
@@ -100,16 +101,24 @@ struct vpCamshiftKalmanTracker::Impl {
     return inside > 0 ? candidate.moments.mass / inside : 0;
   }
 
+  double extentOf(const Candidate &candidate) const
+  {
+    return std::sqrt(candidate.moments.sigmaU * candidate.moments.sigmaV / (width * height));
+  }
+
   /*!
-    How far a sighting is as usual, 0 to 1. A part of the target may be hidden, or outside the picture; or
-    more of its kind than usual is near, where another target may pass, and what was found may lie between the
-    two.
+    How far a sighting is as usual, 0 to 1. A part of the target may be hidden: the rest is less alike, and
+    before that, as long as the window can move along with the rest, less extended. Or more of its kind than
+    usual is near, where another target may pass, and what was found may lie between the two.
   */
   double trust(const Candidate &candidate) const
   {
     const double likeness = std::min(1.0, (candidate.coefficient + coefficient.margin()) / coefficient.mean);
-    const double more = (crowdOf(candidate) - crowd.margin()) / crowd.mean;
-    return likeness / std::max(1.0, more);
+    const bool whole = candidate.visible > nearlyWhole; // otherwise the picture ends, not the target
+    const double extended =
+        whole ? std::min(1.0, (extentOf(candidate) + extent.margin()) / extent.mean) : 1.0;
+    const double more = std::max(1.0, (crowdOf(candidate) - crowd.margin()) / crowd.mean);
+    return likeness * extended / more;
   }
 
   //! What comes on slowly and stays is usual after all.
@@ -118,6 +127,7 @@ struct vpCamshiftKalmanTracker::Impl {
     const double rate = trust(seen) >= asUsual ? 0.1 : 0.02; // a frame
     coefficient.add(seen.coefficient, rate);
     crowd.add(crowdOf(seen), rate);
+    extent.add(extentOf(seen), rate);
   }
 };
 
@@ -174,6 +184,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel
   own.coefficient = {1, firstSpread};
   own.crowd = {std::max(own.crowdOf(given), 1e-3), firstSpread};
   own.acceleration = steadiness * own.size();
+  own.extent = {std::max(own.extentOf(given), 1e-3), firstSpread / 3};
   own.filter.init(middle, noiseFloor, startVelocity * own.size());
   return {window, own.model.bhattacharyya(given.shares), true};
 }
