@@ -121,6 +121,17 @@ struct vpCamshiftKalmanTracker::Impl {
     return likeness * extended / more;
   }
 
+  //! Whether the target seems to come nearer or go farther: it changes along both axes alike, and is where it
+  //! was expected. What hides a part of it, or passes by, changes one axis more, and pulls.
+  bool scales(const Candidate &candidate) const
+  {
+    const double across = std::log(candidate.moments.sigmaU / width / reference.sigmaU);
+    const double down = std::log(candidate.moments.sigmaV / height / reference.sigmaV);
+    const double pulled = vpImagePoint::distance(candidate.window.getCenter(), filter.predicted());
+    return across * down > 0 && std::abs(across - down) < 0.5 * std::abs(across + down) / 2 &&
+           pulled < 0.05 * size() + 2 * filter.predictedSigma();
+  }
+
   //! What comes on slowly and stays is usual after all.
   void learnUsual(const Candidate &seen)
   {
@@ -210,10 +221,10 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
   }
   if (recognized) {
     correct(seen);
+    adaptSize(seen);
     if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted && seen.visible > nearlyWhole) {
       m_impl->learnUsual(seen);
       if (m_impl->trust(seen) >= asUsual) {
-        adaptSize(seen);
         refreshModel(I, seen);
       }
     }
@@ -359,6 +370,10 @@ void vpCamshiftKalmanTracker::adaptSize(const Candidate &seen)
 {
   static const double most = 3; // times the first size, or a part of it
   Impl &own = *m_impl;
+  if (seen.coefficient < threshold || seen.visible < nearlyWhole ||
+      (own.trust(seen) < asUsual && !own.scales(seen))) {
+    return;
+  }
   auto adapted = [this](double length, double sigma, double referenceSigma, double firstLength) {
     if (!(sigma > 0 && referenceSigma > 0)) {
       return length;
