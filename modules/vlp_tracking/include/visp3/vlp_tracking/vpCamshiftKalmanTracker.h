@@ -45,7 +45,7 @@ public:
   double noiseScale = 4;        // window sizes, measurement sigma where rho is one half
   double startVelocity = 1;     // window sizes per frame, standard deviation where velocity is not known yet
   double steadiness = 0.005;    // window sizes per frame^2, smallest change of velocity reckoned with
-  double sizeRate = 0.3;        // share of a change of size followed in one frame
+  double sizeRate = 0.2;        // share of a change of size followed in one frame
   double maxSizeChange = 0.05;  // of the window's sides, in one frame
   double trusted = 0.85;        // coefficient from which size and model are adapted
   double refreshRate = 0.2;     // share of the model replaced at each refresh
