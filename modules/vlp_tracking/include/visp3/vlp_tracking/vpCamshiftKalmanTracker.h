@@ -21,17 +21,17 @@ BEGIN_VISP_NAMESPACE
   1. The Kalman filter predicts the window.
   2. Mean shift moves it over the back projection of the histogram until it rests.
   3. The Bhattacharyya coefficient rho compares what it holds with the target. Below \e threshold the eight
-     windows around the prediction are tried, and the best one counts; then a search window that is as large as
-     the prediction is in doubt, and grows from frame to frame while the target is not seen.
-  4. Seen, the coefficient becomes the measurement noise, measurementSigma(), of the Kalman filter's correction;
-     the window takes over the size of what is in it; where all is trusted, the histogram is refreshed slowly.
-     Not seen, the prediction stands, and is less certain with each frame.
+     windows around the prediction are tried, and the best one counts; then a search window that is as large
+  as the prediction is in doubt, and grows from frame to frame while the target is not seen.
+  4. Seen, the coefficient becomes the measurement noise, measurementSigma(), of the Kalman filter's
+  correction; the window takes over the size of what is in it; where all is trusted, the histogram is
+  refreshed slowly. Not seen, the prediction stands, and is less certain with each frame.
 
   The paper leaves open how far a steady target should be believed to go on steadily. Here the process noise
-  follows the target: an innovation that neither the prediction's doubt nor the measurement's explains raises it,
-  and it calms down while there is none. The measurement's doubt grows, beyond rho, where a part seems to be hidden
-  or another target near (vpUsualSight in the sources). So half a target at an obstacle's edge, or a similar one
-  that passes, does not pull the estimate along.
+  follows the target: an innovation that neither the prediction's doubt nor the measurement's explains raises
+  it, and it calms down while there is none. The measurement's doubt grows, beyond rho, where a part seems to
+  be hidden or another target near (vpUsualSight in the sources). So half a target at an obstacle's edge, or a
+  similar one that passes, does not pull the estimate along.
 
   The unit of time is one frame: with a frame dropped, the target seems to jump, which the search covers. What
   has left the picture is waited for where it left, half a window outside.
@@ -66,8 +66,8 @@ public:
     Standard deviation of a measured position, px, from the coefficient: ours, since the paper does not give
     its function.
     \f[ \sigma(\rho) = noiseFloor + noiseScale \; s \; \frac{1 - \rho}{\rho} \f]
-    with the window's size s, the root of its area; infinite (no correction) below \e threshold. In a correction
-    rho is taken as a share of what it usually is.
+    with the window's size s, the root of its area; infinite (no correction) below \e threshold. In a
+    correction rho is taken as a share of what it usually is.
   */
   double measurementSigma(double rho) const;
 
