@@ -154,12 +154,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
   if (recognized) {
     correct(seen);
     adaptSize(seen);
-    if (seen.coefficient >= trusted && m_impl->usual.trust(seen) >= trusted && seen.visible > nearlyWhole) {
-      m_impl->usual.learn(seen);
-      if (m_impl->usual.asUsual(seen)) {
-        refreshModel(I, seen);
-      }
-    }
+    refreshModel(I, seen);
     m_impl->missed = 0;
   } else {
     m_impl->filter.coast();
@@ -322,6 +317,13 @@ template <class Pixel>
 void vpCamshiftKalmanTracker::refreshModel(const vpImage<Pixel> &I, const Candidate &seen)
 {
   Impl &own = *m_impl;
+  if (seen.coefficient < trusted || own.usual.trust(seen) < trusted || seen.visible < nearlyWhole) {
+    return;
+  }
+  own.usual.learn(seen);
+  if (!own.usual.asUsual(seen)) {
+    return;
+  }
   if (++own.trustedFrames % std::max(1, refreshInterval) == 0) {
     own.model.refresh(seen.shares,
                       own.sums.histogramAround(I, binsOf(I), seen.window, scaled(seen.window, surroundings)),

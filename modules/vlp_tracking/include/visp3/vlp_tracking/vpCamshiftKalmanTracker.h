@@ -21,11 +21,11 @@ BEGIN_VISP_NAMESPACE
   1. The Kalman filter predicts the window.
   2. Mean shift moves it over the back projection of the histogram until it rests.
   3. The Bhattacharyya coefficient rho compares what it holds with the target. Below \e threshold the eight
-     windows around the prediction are tried, and the best one counts; then a search window that is as large
-  as the prediction is in doubt, and grows from frame to frame while the target is not seen.
+     windows around the prediction are tried, and the best one counts; then a search window that is as
+     large as the prediction is in doubt, and grows from frame to frame while the target is not seen.
   4. Seen, the coefficient becomes the measurement noise, measurementSigma(), of the Kalman filter's
-  correction; the window takes over the size of what is in it; where all is trusted, the histogram is
-  refreshed slowly. Not seen, the prediction stands, and is less certain with each frame.
+     correction; the window takes over the size of what is in it; where all is trusted, the histogram is
+     refreshed slowly. Not seen, the prediction stands, and is less certain with each frame.
 
   The paper leaves open how far a steady target should be believed to go on steadily. Here the process noise
   follows the target: an innovation that neither the prediction's doubt nor the measurement's explains raises
