@@ -55,7 +55,7 @@ public:
   double steadiness = 0.005;    // window sizes per frame^2, smallest change of velocity reckoned with
   double sizeRate = 0.2;        // share of a change of size followed in one frame
   double maxSizeChange = 0.05;  // of the window's sides, in one frame
-  double trusted = 0.85;        // coefficient from which size and model are adapted
+  double trusted = 0.85;        // coefficient, and trust, from which the model is refreshed
   double refreshRate = 0.2;     // share of the model replaced at each refresh
   int refreshInterval = 5;      // trusted frames
 
