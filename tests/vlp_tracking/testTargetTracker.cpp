@@ -136,6 +136,8 @@ TEST(TargetTracker, CamshiftMindsColours)
 {
   const vpTargetScene made = scene(1);
   vpCamshiftKalmanTracker tracker;
+  vpExpectError([&] { tracker.velocity(); }, {"velocity", "initTracking()"});
+  vpExpectError([&] { tracker.positionSigma(); }, {"positionSigma", "initTracking()"});
   run(tracker, made, 3);
   vpExpectError([&] { tracker.track(made.colour(3)); }, {"track: the picture has colours", "expected grey"});
   run(tracker, made, 3, true);

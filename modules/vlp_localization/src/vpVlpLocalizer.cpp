@@ -233,8 +233,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
 */
 bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable)
 {
-  static const int often = 6; // frames
-  static const double beyond = 6;
+  static const int often = 6;     // frames
+  static const double beyond = 5; // root mean square of what is left, standard deviations: of a restless robot
   const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
   double chiSquare = 0, degrees = 0, apart = 0;
   for (size_t i : usable) {
@@ -249,7 +249,7 @@ bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vecto
       degrees += 2;
     }
   }
-  const bool misfit = chiSquare > degrees + beyond * std::sqrt(2 * degrees);
+  const bool misfit = chiSquare > beyond * beyond * degrees;
   const bool now = usable.size() > 2 && (misfit || 2 * apart >= static_cast<double>(usable.size()));
   m_contradictions = now ? m_contradictions + 1 : std::max(0, m_contradictions - 1);
   return m_contradictions >= often;

@@ -14,6 +14,7 @@
 #include "vpGrownSearch.h"
 #include "vpPositionFilter.h"
 #include "vpTargetModel.h"
+#include "vpUsualSight.h"
 #include "vpWindowSums.h"
 
 BEGIN_VISP_NAMESPACE
@@ -43,82 +44,36 @@ vpRect moved(const vpRect &window, double du, double dv)
 const double leastVisible = 0.2;
 const double nearlyWhole = 0.98;
 
-//! Trust from which nothing seems to be hidden, or near.
-const double asUsual = 0.98;
-
 const double surroundings = 2; // window sizes on a side
 } // namespace
 
-//! Where mean shift came to rest, and what is there.
-struct vpCamshiftKalmanTracker::Candidate {
-  vpRect window;
-  double coefficient = 0;
-  double visible = 0; // share of the window, under the kernel
-  vpBinShares shares{};
-  vpWindowMoments moments; // over the search window
+struct vpCamshiftKalmanTracker::Candidate : vpTargetCandidate {
 };
 
 struct vpCamshiftKalmanTracker::Impl {
-  //! Of the target when its window was given, as shares of the window's size.
-  struct Reference {
-    double offsetU = 0, offsetV = 0; // of the window's middle from the middle of the back projection
-    double sigmaU = 0, sigmaV = 0;   // spread of the back projection
-    double width = 0, height = 0;    // px
-  };
-
-  //! Running mean of a figure, and of how far it strays from it: stripes that change their phase make some.
-  struct Usual {
-    double mean = 0, spread = 0;
-
-    void add(double value, double rate)
-    {
-      spread += rate * (std::abs(value - mean) - spread);
-      mean += rate * (value - mean);
-    }
-    double margin() const { return 2 * spread; }
-  };
-
   vpTargetModel model;
+  vpUsualSight usual;
   vpPositionFilter filter;
   vpWindowSums sums;
   vpGrownSearch grown;
-  Reference reference;
-  Usual coefficient;       // in the frames in which all was well
-  Usual crowd;             // the same, mass in the search window for each of the window
-  double acceleration = 0; // px/frame^2, standard deviation
   bool colour = false;
-  double width = 0, height = 0;                     // px, of the window
   unsigned int pictureWidth = 0, pictureHeight = 0; // px
-  int missed = 0;                                   // frames since it was seen
+  double width = 0, height = 0;                     // px, of the window; 0 before initTracking()
+  double firstWidth = 0, firstHeight = 0;           // px
+  double offsetU = 0, offsetV = 0; // window sizes, its middle from that of what tells the target
+  double acceleration = 0;         // px/frame^2, standard deviation
+  int missed = 0;                  // frames since it was seen
   int trustedFrames = 0;
   bool predicted = false; // since it began
 
   double size() const { return std::sqrt(width * height); }
 
-  double crowdOf(const Candidate &candidate) const
+  void check(const char *method) const
   {
-    const double inside = model.mass(candidate.shares);
-    return inside > 0 ? candidate.moments.mass / inside : 0;
-  }
-
-  /*!
-    How far a sighting is as usual, 0 to 1. A part of the target may be hidden, or outside the picture; or
-    more of its kind than usual is near, where another target may pass, and what was found may lie between the
-    two.
-  */
-  double trust(const Candidate &candidate) const
-  {
-    const double likeness = std::min(1.0, (candidate.coefficient + coefficient.margin()) / coefficient.mean);
-    const double more = (crowdOf(candidate) - crowd.margin()) / crowd.mean;
-    return likeness / std::max(1.0, more);
-  }
-
-  //! What comes on slowly and stays is usual after all.
-  void learnUsual(const Candidate &seen)
-  {
-    const double rate = trust(seen) >= asUsual ? 0.1 : 0.02; // a frame
-    coefficient.add(seen.coefficient, rate);
-    crowd.add(crowdOf(seen), rate);
+    if (width == 0) {
+      throw vpException(vpException::notInitialized, "%s: no target yet, expected initTracking() before",
+                        method);
+    }
   }
 };
 
@@ -136,11 +91,13 @@ double vpCamshiftKalmanTracker::measurementSigma(double rho) const
 
 vpImagePoint vpCamshiftKalmanTracker::velocity() const
 {
+  m_impl->check("velocity");
   return m_impl->filter.velocity();
 }
 
 double vpCamshiftKalmanTracker::positionSigma() const
 {
+  m_impl->check("positionSigma");
   return m_impl->filter.positionSigma();
 }
 
@@ -152,28 +109,25 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel
   own.colour = std::is_same_v<Pixel, vpRGBa>;
   own.pictureWidth = I.getWidth();
   own.pictureHeight = I.getHeight();
-  own.width = own.reference.width = window.getWidth();
-  own.height = own.reference.height = window.getHeight();
+  own.width = own.firstWidth = window.getWidth();
+  own.height = own.firstHeight = window.getHeight();
   const auto binOf = binsOf(I);
   own.model.learn(own.colour, own.sums.histogram(I, binOf, window),
                   own.sums.histogramAround(I, binOf, window, scaled(window, surroundings)));
 
   // The middle of what tells the target from its surroundings need not be that of the window given.
   static const double farthest = 0.25;
-  static const double firstSpread = 0.01;
   const Candidate rest = meanShift(I, window);
   const vpImagePoint middle = window.getCenter(), found = rest.window.getCenter();
   auto offset = [](double difference, double length) {
     return std::clamp(difference / length, -farthest, farthest);
   };
-  own.reference.offsetU = offset(middle.get_u() - found.get_u(), own.width);
-  own.reference.offsetV = offset(middle.get_v() - found.get_v(), own.height);
-  own.reference.sigmaU = rest.moments.sigmaU / own.width;
-  own.reference.sigmaV = rest.moments.sigmaV / own.height;
+  own.offsetU = offset(middle.get_u() - found.get_u(), own.width);
+  own.offsetV = offset(middle.get_v() - found.get_v(), own.height);
   Candidate given = rest;
   given.shares = own.sums.histogram(I, binOf, window);
-  own.coefficient = {1, firstSpread};
-  own.crowd = {std::max(own.crowdOf(given), 1e-3), firstSpread};
+  given.mass = own.model.mass(given.shares);
+  own.usual.begin(given);
   own.acceleration = steadiness * own.size();
   own.filter.init(middle, noiseFloor, startVelocity * own.size());
   return {window, own.model.bhattacharyya(given.shares), true};
@@ -201,13 +155,8 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::followIn(const vpImage<Pixel>
   }
   if (recognized) {
     correctBy(seen);
-    if (seen.coefficient >= trusted && m_impl->trust(seen) >= trusted && seen.visible > nearlyWhole) {
-      m_impl->learnUsual(seen);
-      if (m_impl->trust(seen) >= asUsual) {
-        adaptSize(seen);
-        refreshModel(I, seen);
-      }
-    }
+    adaptSize(seen);
+    refreshModel(I, seen);
     m_impl->missed = 0;
   } else {
     m_impl->filter.coast();
@@ -247,8 +196,8 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::meanShift(const vpIm
   static const double stride = 1.5;
   Impl &own = *m_impl;
   const auto binOf = binsOf(I);
-  const double offsetU = own.reference.offsetU * start.getWidth();
-  const double offsetV = own.reference.offsetV * start.getHeight();
+  const double offsetU = own.offsetU * start.getWidth();
+  const double offsetV = own.offsetV * start.getHeight();
   Candidate candidate;
   vpRect search = scaled(moved(start, -offsetU, -offsetV), 1 + 2 * searchMargin);
   for (int i = 0; i < maxIterations; ++i) {
@@ -261,6 +210,7 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::meanShift(const vpIm
   }
   candidate.window = moved(scaled(search, 1 / (1 + 2 * searchMargin)), offsetU, offsetV);
   candidate.shares = own.sums.histogram(I, binOf, candidate.window);
+  candidate.mass = own.model.mass(candidate.shares);
   candidate.visible = own.sums.visible();
   candidate.coefficient = candidate.visible < leastVisible ? 0 : own.model.bhattacharyya(candidate.shares);
   return candidate;
@@ -327,7 +277,7 @@ void vpCamshiftKalmanTracker::correctBy(const Candidate &seen)
   Impl &own = *m_impl;
   const vpImagePoint measured = seen.window.getCenter();
   const double innovation = vpImagePoint::distance(measured, own.filter.predicted());
-  double sigma = measurementSigma(std::max(own.trust(seen), threshold)) / seen.visible;
+  double sigma = measurementSigma(std::max(own.usual.trust(seen), threshold)) / seen.visible;
   if (innovation > own.size()) { // farther than anything hidden could move the middle of the rest
     sigma = std::min(sigma, 0.25 * own.size());
   }
@@ -353,26 +303,36 @@ void vpCamshiftKalmanTracker::correctBy(const vpImagePoint &measured, double sig
   own.filter.correct(measured, sigma);
 }
 
+//! What comes nearer is where it was expected; what hides a part of the target, or passes by, pulls.
 void vpCamshiftKalmanTracker::adaptSize(const Candidate &seen)
 {
   static const double most = 3; // times the first size, or a part of it
   Impl &own = *m_impl;
-  auto adapted = [this](double length, double sigma, double referenceSigma, double firstLength) {
-    if (!(sigma > 0 && referenceSigma > 0)) {
-      return length;
-    }
-    const double wanted = std::pow(sigma / length / referenceSigma, sizeRate);
+  const double pulled = vpImagePoint::distance(seen.window.getCenter(), own.filter.predicted());
+  const bool pulls = pulled > 0.05 * own.size() + 2 * own.filter.predictedSigma();
+  if (seen.visible < nearlyWhole || !(own.usual.asUsual(seen) || (own.usual.changedAlike(seen) && !pulls))) {
+    return;
+  }
+  auto adapted = [this](double length, double growth, double first) {
+    const double wanted = std::pow(growth, sizeRate);
     const double bounded = std::clamp(wanted, 1 / (1 + maxSizeChange), 1 + maxSizeChange);
-    return std::clamp(length * bounded, std::max(4.0, firstLength / most), firstLength * most);
+    return std::clamp(length * bounded, std::max(4.0, first / most), first * most);
   };
-  own.width = adapted(own.width, seen.moments.sigmaU, own.reference.sigmaU, own.reference.width);
-  own.height = adapted(own.height, seen.moments.sigmaV, own.reference.sigmaV, own.reference.height);
+  own.width = adapted(own.width, own.usual.growthAcross(seen), own.firstWidth);
+  own.height = adapted(own.height, own.usual.growthDown(seen), own.firstHeight);
 }
 
 template <class Pixel>
 void vpCamshiftKalmanTracker::refreshModel(const vpImage<Pixel> &I, const Candidate &seen)
 {
   Impl &own = *m_impl;
+  if (seen.coefficient < trusted || own.usual.trust(seen) < trusted || seen.visible < nearlyWhole) {
+    return;
+  }
+  own.usual.learn(seen);
+  if (!own.usual.asUsual(seen)) {
+    return;
+  }
   if (++own.trustedFrames % std::max(1, refreshInterval) == 0) {
     own.model.refresh(seen.shares,
                       own.sums.histogramAround(I, binsOf(I), seen.window, scaled(seen.window, surroundings)),

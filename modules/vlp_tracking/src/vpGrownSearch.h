@@ -34,7 +34,7 @@ public:
                            const vpRect &region, const vpRect &target, int count);
 
 private:
-  static const int cellsPerWindow = 4;
+  static constexpr int cellsPerWindow = 4;
 
   //! Lays the cells over the part of the region inside the picture.
   void lay(const vpRect &region, const vpRect &target, unsigned int width, unsigned int height);

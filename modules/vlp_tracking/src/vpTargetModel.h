@@ -18,16 +18,16 @@ BEGIN_VISP_NAMESPACE
   white lamp in a colour picture is a target too.
 */
 struct vpGreyBins {
-  static const int count = 32;
-  static const int width = 8; // grey levels
+  static constexpr int count = 32;
+  static constexpr int width = 8; // grey levels
   int operator()(unsigned char grey) const { return grey >> 3; }
 };
 
 struct vpColourBins {
-  static const int hues = 16;
-  static const int saturations = 4;
-  static const int intensities = 8;
-  static const int count = hues * saturations + intensities;
+  static constexpr int hues = 16;
+  static constexpr int saturations = 4;
+  static constexpr int intensities = 8;
+  static constexpr int count = hues * saturations + intensities;
   using Table = std::array<unsigned char, 1 << 15>; // bins by the upper five bits of red, green and blue
 
   const Table &bins = table();

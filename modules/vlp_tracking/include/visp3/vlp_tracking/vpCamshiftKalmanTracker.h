@@ -21,16 +21,24 @@ BEGIN_VISP_NAMESPACE
   1. The Kalman filter predicts the window.
   2. Mean shift moves it over the back projection of the histogram until it rests.
   3. The Bhattacharyya coefficient rho compares what it holds with the target. Below \e threshold the eight
-     windows around the prediction are tried, and the best one counts; then a search window that grows from
-     frame to frame while the target is not seen.
+     windows around the prediction are tried, and the best one counts; then a search window that is as
+     large as the prediction is in doubt, and grows from frame to frame while the target is not seen.
   4. Seen, the coefficient becomes the measurement noise, measurementSigma(), of the Kalman filter's
-  correction; the window takes over the size of what is in it; where all is trusted, the histogram is
-  refreshed slowly. Not seen, the prediction stands, and is less certain with each frame.
+     correction; the window takes over the size of what is in it; where all is trusted, the histogram is
+     refreshed slowly. Not seen, the prediction stands, and is less certain with each frame.
 
-  The unit of time is one frame: with a frame dropped, the target seems to jump, which the search covers.
+  The paper leaves open how far a steady target should be believed to go on steadily. Here the process noise
+  follows the target: an innovation that neither the prediction's doubt nor the measurement's explains raises
+  it, and it calms down while there is none. The measurement's doubt grows, beyond rho, where a part seems to
+  be hidden or another target near (vpUsualSight in the sources). So half a target at an obstacle's edge, or a
+  similar one that passes, does not pull the estimate along.
+
+  The unit of time is one frame: with a frame dropped, the target seems to jump, which the search covers. What
+  has left the picture is waited for where it left, half a window outside.
 
   A target whose histogram is that of its surroundings cannot be told from them; the window then stays about
-  where it is, and similarity() means little. Pictures of colours and grey ones are not to be mixed.
+  where it is, and similarity() means little. Pictures of colours and grey ones are not to be mixed. A window
+  that grows or shrinks to more than three times, or less than a third of, its first size stays there.
 */
 class VISP_EXPORT vpCamshiftKalmanTracker : public vpTargetTracker
 {
@@ -45,9 +53,9 @@ public:
   double noiseScale = 4;        // window sizes, measurement sigma where rho is one half
   double startVelocity = 1;     // window sizes per frame, standard deviation where velocity is not known yet
   double steadiness = 0.005;    // window sizes per frame^2, smallest change of velocity reckoned with
-  double sizeRate = 0.1;        // share of a change of size followed in one frame
-  double maxSizeChange = 0.03;  // of the window's sides, in one frame
-  double trusted = 0.85;        // coefficient from which size and model are adapted
+  double sizeRate = 0.2;        // share of a change of size followed in one frame
+  double maxSizeChange = 0.05;  // of the window's sides, in one frame
+  double trusted = 0.85;        // coefficient, and trust, from which the model is refreshed
   double refreshRate = 0.2;     // share of the model replaced at each refresh
   int refreshInterval = 5;      // trusted frames
 
@@ -58,10 +66,12 @@ public:
     Standard deviation of a measured position, px, from the coefficient: ours, since the paper does not give
     its function.
     \f[ \sigma(\rho) = noiseFloor + noiseScale \; s \; \frac{1 - \rho}{\rho} \f]
-    with the window's size s, the root of its area; infinite (no correction) below \e threshold.
+    with the window's size s, the root of its area; infinite (no correction) below \e threshold. In a
+    correction rho is taken as a share of what it usually is.
   */
   double measurementSigma(double rho) const;
 
+  //! Both \throw vpException notInitialized before initTracking().
   vpImagePoint velocity() const; // px per frame, as estimated
   double positionSigma() const;  // px, of the estimated position
 

@@ -67,7 +67,7 @@ public:
   //! The middle of the whole estimated window, which lies outside the picture where most of the window does.
   vpImagePoint center() const { return m_estimate.getCenter(); }
 
-  //! How much what was seen last looks like the target: 0 (not seen at all) to 1.
+  //! How much the likest that was found in the last picture looks like the target: 0 (nothing) to 1.
   double similarity() const { return m_similarity; }
 
   void display(const vpImage<unsigned char> &I, const vpColor &color, unsigned int thickness = 1) const;
