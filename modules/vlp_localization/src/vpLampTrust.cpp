@@ -81,7 +81,7 @@ std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &se
                                  const Eigen::Vector2d &expectedExtent)
 {
   const auto found = m_past.find(lamp.id);
-  if (found == m_past.end() || found->second.frames < known || seen.cut || !(expectedExtent.minCoeff() > 0)) {
+  if (found == m_past.end() || found->second.sizes < known || seen.cut || !(expectedExtent.minCoeff() > 0)) {
     return "";
   }
   Past &past = found->second;
@@ -104,7 +104,7 @@ bool vpLampTrust::inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &inn
   const auto found = m_past.find(lamp.id);
   const bool before = found != m_past.end() && found->second.frames >= known;
   vpVlpFilter::Innovation moved = innovation;
-  moved.ray -= before ? found->second.offset : Eigen::Vector2d(0, 0);
+  moved.ray -= offset(lamp);
   return moved.distance(before ? placeTolerance : mapTolerance) < gate * gate;
 }
 
@@ -129,12 +129,9 @@ void vpLampTrust::believe(const vpLamp &lamp, const vpLampObservation &seen,
   past.doubt = (1 - share) * (1 - share) * past.doubt + share * share * innovation.covariance;
   if (!seen.cut && expectedExtent.minCoeff() > 0) {
     const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expectedExtent);
-    if (past.size.isZero()) {
-      past.size = size;
-      past.shape = seen.outline.shape;
-    } else {
-      past.size += share * (size - past.size);
-    }
+    past.shape = past.sizes == 0 ? seen.outline.shape : past.shape;
+    ++past.sizes;
+    past.size += std::max(memory, 1.0 / past.sizes) * (size - past.size);
   }
 }
 

@@ -52,6 +52,7 @@ public:
 private:
   struct Past {
     int frames = 0;
+    int sizes = 0;                                     // frames that told its size
     int smaller = 0, larger = 0;                       // frames in a row that it was so
     vpLampOutline::Shape shape = vpLampOutline::Shape::region;
     Eigen::Vector2d offset = Eigen::Vector2d::Zero();  // normalised units, running mean of the innovations

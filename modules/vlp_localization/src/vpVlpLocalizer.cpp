@@ -276,8 +276,7 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
     const Eigen::Vector2d offset = m_trust->offset(*lamp);
     sight.covariance += offset * offset.transpose();
     const vpVlpFilter::Innovation innovation = filter.innovation(sight);
-    const Eigen::Vector2d extent = 
-        vpLampTrust::extentOf(*lamp, filter.now().wMb, filter.velocity(), m_rig, m_lineTime);
+    const Eigen::Vector2d extent = expectedExtent(*lamp);
     seen.remark = m_trust->changed(*lamp, seen, extent);
     if (!seen.remark.empty()) {
       continue;
@@ -301,6 +300,21 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
   fix.wMc = marked.wMc;
   fix.covariance = marked.covariance;
   return fix;
+}
+
+//! Width and height of a lamp in the picture, px; 0 where the robot's velocity is too uncertain to say.
+Eigen::Vector2d vpVlpLocalizer::expectedExtent(const vpLamp &lamp) const
+{
+  static const double sure = 0.004; // share of the extent, standard deviation
+  const vpVlpFix fix = filter.now();
+  const Eigen::Matrix3d doubt = filter.velocityCovariance();
+  const double height = lamp.position.z() - fix.wMc[2][3],
+               apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
+  const double speed = std::sqrt(std::max(doubt(0, 0), doubt(1, 1))) + apart * std::sqrt(doubt(2, 2));
+  if (!(m_rig.camera.get_px() * speed / height * std::abs(m_lineTime) < sure)) {
+    return Eigen::Vector2d::Zero();
+  }
+  return vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
 }
 
 //! At which a lamp was seen, s.

@@ -145,6 +145,7 @@ public:
 
   //! Along x and y of b (m/s), and the turn rate (rad/s).
   Eigen::Vector3d velocity() const { return m_x.segment<3>(vx); }
+  Eigen::Matrix3d velocityCovariance() const { return m_P.block<3, 3>(vx, vx); }
 
 private:
   enum Index {

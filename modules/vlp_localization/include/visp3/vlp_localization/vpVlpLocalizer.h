@@ -97,6 +97,7 @@ private:
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
 
+  Eigen::Vector2d expectedExtent(const vpLamp &lamp) const;
   double timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const;
 
   //! The map's lamp of each, by its id; nullptr: none.
