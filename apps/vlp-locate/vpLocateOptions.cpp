@@ -38,7 +38,7 @@ Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
   fixes    timestamp_s,x,y,z,roll,pitch,yaw,sigma_x,sigma_y,sigma_z,sigma_yaw,cov_xy,lamps,state,compute_s:
            a row for each frame read. Angles about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).
            lamps: their ids, joined by ';'. state: tracking (the pose is carried from frame to frame, its
-           sigma below 20 mm and 0.05 rad); coasting (less certain, sigma below 100 mm: few lamps or none);
+           sigma below 20 mm and 0.05 rad); coasting (less certain, sigma below 200 mm: few lamps or none);
            fix (of this frame alone); ambiguous (a second pose explains the frame as well, this one is the
            likelier); none (no position, the fields of the pose are empty).
   seen     timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted,symbols:

@@ -375,17 +375,21 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
 std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines,
                                                const cv::Rect &window) const
 {
-  static const int mostRounds = 3;
+  static const int mostRounds = 3; // after which the whole picture is looked at
   const cv::Rect picture(0, 0, lines.cols, lines.rows);
   cv::Rect looked = window & picture;
   std::vector<vpLedRoi> rois;
-  for (int round = 0; round < mostRounds && looked.area() > 0; ++round) {
+  for (int round = 1; looked.area() > 0; ++round) {
     rois = detect(lines(looked));
     for (vpLedRoi &roi : rois) {
       moveTo(roi, looked.tl(), picture.size());
     }
-    const cv::Rect grown = grownAround(looked, rois, picture);
-    if (grown == looked) {
+    // What came into view by looking farther was not asked for, and may be cut.
+    rois.erase(std::remove_if(rois.begin(), rois.end(),
+                              [&window](const vpLedRoi &roi) { return (roi.box & window).area() == 0; }),
+               rois.end());
+    const cv::Rect grown = round < mostRounds ? grownAround(looked, rois, picture) : picture;
+    if (grownAround(looked, rois, picture) == looked) {
       break;
     }
     looked = grown;

@@ -96,10 +96,30 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   forgetVelocity();
 }
 
+void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
+{
+  const vpBasePose pose = vpBasePose::of(before.wMb);
+  const double heading = std::atan2(pose.wRb(1, 0), pose.wRb(0, 0));
+  const double turned = std::remainder(m_x(yaw) - heading, 2 * M_PI);
+  const Eigen::Vector2d way = m_x.head<2>() - pose.wtb.head<2>();
+  m_x.segment<2>(vx) = Eigen::Rotation2Dd(-heading - turned / 2) * way / since;
+  m_x(w) = turned / since;
+  // A single frame's pose is as good as its map, and its motion in between need not have been constant.
+  static const double placeSigma = 0.003, turnSigma = 0.005; // m, rad
+  const double place = std::sqrt(std::max(before.covariance(0, 0), before.covariance(1, 1))) + placeSigma,
+               turn = std::sqrt(before.covariance(5, 5)) + turnSigma;
+  for (int i : {vx, vy, w}) {
+    m_P.row(i).setZero();
+    m_P.col(i).setZero();
+    m_P(i, i) = i == w ? square(turn / since) + square(turnAcceleration) * since
+                       : square(place / since) + square(acceleration) * since;
+  }
+}
+
 void vpVlpFilter::doubtClaims()
 {
-  m_tiltDoubt = std::hypot(m_tiltDoubt, claimedTilt);
-  m_placeDoubt = std::hypot(m_placeDoubt, claimedPlace);
+  m_tiltDoubt = std::max(claimedTilt, 2 * m_tiltDoubt);
+  m_placeDoubt = std::max(claimedPlace, 2 * m_placeDoubt);
 }
 
 void vpVlpFilter::forgetVelocity()
@@ -374,7 +394,7 @@ vpVlpFilter::State vpVlpFilter::state(const vpVlpFix &fix) const
   }
   const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
                turn = std::sqrt(fix.covariance(5, 5));
-  if (!(place < lostSigma)) {
+  if (!(place < lostSigma && turn < lostYaw)) {
     return State::lost;
   }
   return place < trackingSigma && turn < trackingYaw ? State::tracking : State::coasting;

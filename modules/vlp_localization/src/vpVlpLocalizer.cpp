@@ -17,6 +17,7 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+const double mostStrain = 8; // standard deviations
 const char *const misplaced = "not where the robot's motion has it";
 } // namespace
 
@@ -40,6 +41,9 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
   if (tracking && !inOrder(frame.timestamp)) {
     location.fix.refusal = "the frame is not later than the one before it";
     return location;
+  }
+  if (filter.started() && filter.state(filter.fixAt(frame.timestamp)) == vpVlpFilter::State::lost) {
+    filter.stop(); // so long ago that what it expects of the lamps would mean nothing
   }
 
   // Sections 2.1.1 and 2.1.2: LED-ROI, outline, stripe features and LED-ID of every lamp-like region, in the
@@ -70,7 +74,7 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
     location.fix.refusal = doubt;
   }
   if (location.fix.valid && !location.fix.ambiguous) {
-    m_lastPose = {location.fix.wMb, frame.timestamp};
+    m_lastPose = {location.fix, frame.timestamp};
   }
   location.tracked = tracking && location.fix.valid && !location.fix.ambiguous;
   location.state = filter.state(location.fix);
@@ -154,17 +158,31 @@ vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations, std
 void vpVlpLocalizer::begin(vpVlpLocation &location)
 {
   filter.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
-  filter.start(location.fix.wMb, location.timestamp);
+  startAt(location);
   *m_trust = vpLampTrust();
   m_trust->mapTolerance = mapTolerance;
-  m_disagreements = m_contradictions = 0;
+  m_disagreements = m_contradictions = m_followed = 0;
   std::vector<size_t> members;
   for (size_t i = 0; i < location.observations.size(); ++i) {
     if (location.observations[i].accepted) {
       members.push_back(i);
     }
   }
+  if (strain(location, members) > mostStrain) {
+    filter.doubtClaims();
+    startAt(location);
+  }
   location.fix = correct(location, members);
+}
+
+//! With the velocity that the last pose tells, where there is one.
+void vpVlpLocalizer::startAt(const vpVlpLocation &location)
+{
+  static const double recently = 1; // s
+  filter.start(location.fix.wMb, location.timestamp);
+  if (m_lastPose && location.timestamp - m_lastPose->time < recently) {
+    filter.comeFrom(m_lastPose->fix, location.timestamp - m_lastPose->time);
+  }
 }
 
 /*!
@@ -186,9 +204,11 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     *m_trust = trusted;
     location.observations = seen;
   };
+  bool roused = false;
   location.fix = correct(location, usable);
   if (accepted() == 0 || 2 * accepted() < usable.size() ||
       !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
+    roused = accepted() > 0;
     again();
     filter.rouse();
     location.fix = correct(location, usable);
@@ -199,7 +219,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     filter.forgetVelocity();
     location.fix = correct(location, usable);
   }
-  const bool contradictory = contradicts(location, usable);
+  const bool contradictory = contradicts(location, usable, roused);
   const bool few = 2 * accepted() < usable.size(), lost = filter.state(location.fix) == vpVlpFilter::State::lost;
   m_disagreements = few ? m_disagreements : 0;
   if (!few && !lost && !contradictory) {
@@ -227,30 +247,42 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
 }
 
 /*!
-  Whether lamps contradict the pose and each other, frame after frame: what is left of their innovations once all
-  of them have corrected pose and velocity is more than their own doubt. Then camera and map are not as good as
-  they say. A frame or two of it may be a robot that starts or stops.
+  How far the lamps of a frame contradict each other under what camera and map say of themselves, whatever pose and
+  constant velocity the robot has: their innovations in a filter that knows neither, as standard deviations of a
+  chi-square beyond its mean.
 */
-bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable)
+double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const
 {
-  static const int often = 6;     // frames
-  static const double beyond = 5; // root mean square of what is left, standard deviations: of a restless robot
   const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
-  double chiSquare = 0, degrees = 0, apart = 0;
-  for (size_t i : usable) {
-    const vpLampObservation &seen = location.observations[i];
-    apart += seen.remark == misplaced;
-    if (seen.accepted) {
-      vpVlpFilter then = filter;
-      then.advance(timeOf(location, seen));
-      const vpLampSight sight = vpLampSight::from(*lamps[i], seen, m_rig.camera);
-      const Eigen::Vector2d left = then.innovation(sight).ray;
-      chiSquare += left.dot(sight.covariance.inverse() * left);
+  vpVlpFilter alone = filter;
+  alone.start(location.fix.wMb, location.timestamp);
+  alone.calm();
+  double chiSquare = 0, degrees = 0;
+  for (size_t i : inTime(location, usable)) {
+    if (lamps[i] != nullptr && location.observations[i].accepted) {
+      const vpLampSight sight = vpLampSight::from(*lamps[i], location.observations[i], m_rig.camera);
+      alone.advance(timeOf(location, location.observations[i]));
+      chiSquare += alone.innovation(sight).distance(0);
       degrees += 2;
+      alone.update(sight);
     }
   }
-  const bool misfit = chiSquare > beyond * beyond * degrees;
-  const bool now = usable.size() > 2 && (misfit || 2 * apart >= static_cast<double>(usable.size()));
+  return (chiSquare - degrees) / std::sqrt(2 * std::max(1.0, degrees));
+}
+
+/*!
+  Whether lamps contradict what camera and map say of themselves, frame after frame: each other, or any but a
+  robot that never comes to rest. A frame or two of it may be one that starts or stops.
+*/
+bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused)
+{
+  static const int young = 3;                       // frames since the start: its velocity rests on the claims
+  const int often = ++m_followed <= young && !filter.doubtsClaims() ? 1 : 8; // frames
+  const auto apart = std::count_if(usable.begin(), usable.end(), [&location](size_t i) {
+    return location.observations[i].remark == misplaced;
+  });
+  const bool now = usable.size() > 2 && (roused || 2 * static_cast<size_t>(apart) >= usable.size() ||
+                                         strain(location, usable) > mostStrain);
   m_contradictions = now ? m_contradictions + 1 : std::max(0, m_contradictions - 1);
   return m_contradictions >= often;
 }
@@ -259,13 +291,9 @@ bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vecto
 vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
   const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
-  std::vector<size_t> inTime = usable;
-  std::sort(inTime.begin(), inTime.end(), [&location](size_t a, size_t b) {
-    return location.observations[a].time < location.observations[b].time;
-  });
   vpVlpFix fix;
   filter.mark(location.timestamp);
-  for (size_t i : inTime) {
+  for (size_t i : inTime(location, usable)) {
     vpLampObservation &seen = location.observations[i];
     const vpLamp *lamp = lamps[i];
     if (lamp == nullptr) {
@@ -317,6 +345,15 @@ Eigen::Vector2d vpVlpLocalizer::expectedExtent(const vpLamp &lamp) const
   return vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
 }
 
+//! Lamps in the order in which their lines were read.
+std::vector<size_t> vpVlpLocalizer::inTime(const vpVlpLocation &location, std::vector<size_t> which)
+{
+  std::sort(which.begin(), which.end(), [&location](size_t a, size_t b) {
+    return location.observations[a].time < location.observations[b].time;
+  });
+  return which;
+}
+
 //! At which a lamp was seen, s.
 double vpVlpLocalizer::timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const
 {
@@ -344,7 +381,7 @@ vpLampMatch vpVlpLocalizer::matchByPlace(const std::vector<vpLampObservation> &o
   std::optional<vpPoseHint> hint;
   if (m_lastPose) {
     const double since = std::abs(time - m_lastPose->time);
-    hint = vpPoseHint{m_lastPose->wMb, hintReach + maxSpeed * since, hintTurn + maxTurnRate * since};
+    hint = vpPoseHint{m_lastPose->fix.wMb, hintReach + maxSpeed * since, hintTurn + maxTurnRate * since};
   }
   return matcher.match(observations, usable, hint);
 }

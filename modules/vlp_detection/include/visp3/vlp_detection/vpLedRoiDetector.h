@@ -71,9 +71,8 @@ public:
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines) const;
 
   /*!
-    The same of what lies inside \e window (x: samples, y: lines), clipped to the picture. Regions that touch a
-    side of it that is none of the picture's are looked at once more in a larger one. A region that lies mostly
-    outside the window may be left out.
+    The same of all regions that \e window (x: samples, y: lines) shows a part of. Where its sides may cut one,
+    a larger one is looked at.
   */
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window) const;
 };

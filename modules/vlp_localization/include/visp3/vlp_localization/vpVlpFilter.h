@@ -51,13 +51,14 @@ public:
   enum class State {
     starting, //!< no pose yet
     tracking, //!< the pose is as certain as trackingSigma and trackingYaw say
-    coasting, //!< less certain, yet more than lostSigma: a lamp or two, or none, for a while
-    lost      //!< less certain than lostSigma; a new start is needed
+    coasting, //!< less certain, yet more than lostSigma and lostYaw: a lamp or two, or none, for a while
+    lost      //!< less certain than these; a new start is needed
   };
 
   double trackingSigma = 0.02; // m, of x and of y
   double trackingYaw = 0.05;   // rad
-  double lostSigma = 0.1;      // m
+  double lostSigma = 0.2;      // m
+  double lostYaw = 0.3;        // rad
 
   double acceleration = 0.5;         // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
   double turnAcceleration = 4;       // rad/s^2/sqrt(Hz), likewise
@@ -73,7 +74,7 @@ public:
   double odometryTurnScale = 0.01;   // of the turn rate's scale
   double odometryTurnBias = 0.002;   // rad/s, of the turn rate's bias
   double sidewaysSpeed = 0.002;      // m/s, standard deviation of the speed sideways, where there is odometry
-  double claimedTilt = 0.004;        // rad, doubtClaims(): standard deviation added to roll and pitch
+  double claimedTilt = 0.004;        // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
   double claimedPlace = 0.002;       // m, likewise to each coordinate of each lamp
   bool freeAttitude = false;         // roll and pitch change, and are as uncertain as the fix at the start
 
@@ -120,10 +121,16 @@ public:
   bool settle(double chiSquare, int degreesOfFreedom);
   //! The robot may start, stop or turn at any time.
   void rouse() { m_unrest = 1; }
+  //! Its velocity is constant.
+  void calm() { m_unrest = 0; }
 
   //! Takes the rig's attitude and the map's places for less certain than they say, by claimedTilt and
   //! claimedPlace; from the next start() on, since what was estimated before rests on the claims.
   void doubtClaims();
+  bool doubtsClaims() const { return m_placeDoubt > 0; }
+
+  //! After start(): the velocity is what led here from \e before (m, of x and y in w; rad), \e since s ago.
+  void comeFrom(const vpVlpFix &before, double since);
 
   //! Makes the velocity as uncertain as at the start: the robot has changed its mind.
   void forgetVelocity();

@@ -81,15 +81,18 @@ public:
 
 private:
   struct LastPose {
-    vpHomogeneousMatrix wMb;
+    vpVlpFix fix;
     double time = 0; // s
   };
 
   vpVlpFix solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const;
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
   vpVlpFix correct(vpVlpLocation &location, const std::vector<size_t> &usable);
-  bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable);
+  double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
+  bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused);
+  static std::vector<size_t> inTime(const vpVlpLocation &location, std::vector<size_t> which);
   void begin(vpVlpLocation &location);
+  void startAt(const vpVlpLocation &location);
   bool inOrder(double time);
   const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
   std::vector<vpRect> expectedWindows(double time) const;
@@ -110,6 +113,7 @@ private:
   std::optional<LastPose> m_lastPose;
   std::optional<double> m_lastFrame; // s
   std::unique_ptr<vpLampTrust> m_trust;
+  int m_followed = 0;       // frames since the filter's start
   int m_contradictions = 0; // frames of late whose lamps contradict what camera and map say of themselves
   int m_disagreements = 0;  // frames in a row whose lamps agree with each other, and not with the filter
 };
