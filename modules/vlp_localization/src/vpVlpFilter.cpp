@@ -92,7 +92,8 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   sigma.segment<3>(mount) = m_rig.translationSigma;
   sigma(mount + 3) = m_rig.rotationSigma.z();
   m_P = sigma.cwiseAbs2().asDiagonal();
-  rouse();
+  static const double steady = 0.1; // its first two frames tell whether camera and map are as good as they say
+  m_unrest = steady;
   forgetVelocity();
 }
 
@@ -111,8 +112,8 @@ void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
   for (int i : {vx, vy, w}) {
     m_P.row(i).setZero();
     m_P.col(i).setZero();
-    m_P(i, i) = i == w ? square(turn / since) + square(turnAcceleration) * since
-                       : square(place / since) + square(acceleration) * since;
+    m_P(i, i) = i == w ? square(turn / since) + square(m_unrest * turnAcceleration) * since
+                       : square(place / since) + square(m_unrest * acceleration) * since;
   }
 }
 

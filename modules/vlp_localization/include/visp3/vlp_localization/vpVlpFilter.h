@@ -58,10 +58,10 @@ public:
   double trackingSigma = 0.02; // m, of x and of y
   double trackingYaw = 0.05;   // rad
   double lostSigma = 0.2;      // m
-  double lostYaw = 0.3;        // rad
+  double lostYaw = 0.6;        // rad
 
   double acceleration = 0.5;         // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
-  double turnAcceleration = 4;       // rad/s^2/sqrt(Hz), likewise
+  double turnAcceleration = 3;       // rad/s^2/sqrt(Hz), likewise
   double calmest = 0.001;            // share of both that is left of them where innovations are small for long
   double drift = 0.0005;             // m/sqrt(s), of z: a floor is not quite flat
   double tiltDrift = 0.05;           // rad/sqrt(s), of roll and pitch where the attitude is free
