@@ -134,8 +134,9 @@ TEST(VlpLocate, FixesAndSeenHoldTheirColumns)
   folder.write("lamps.png", encoded(".png", vpLocateScene::picture()));
   folder.write("black.png", encoded(".png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(0))));
   folder.write("frames.csv", "timestamp_s,file\n1700000000.25,lamps.png\n1700000000.5,black.png\n");
-  EXPECT_EQ(
-      stdoutOf({"--run", folder.path(), "--fixes", folder / "fixes.csv", "--seen", folder / "seen.csv"}), "");
+  EXPECT_EQ(stdoutOf({"--run", folder.path(), "--no-track", "--fixes", folder / "fixes.csv", "--seen",
+                      folder / "seen.csv"}),
+            "");
 
   const vpCsvTable fixes = vpCsvTable::load(folder / "fixes.csv", fixColumns);
   ASSERT_EQ(fixes.rows(), 2u);

@@ -106,6 +106,7 @@ TEST(VlpLocalizer, MillimetreFromAllLampsWithinItsCovariance)
 {
   const Room room;
   vpVlpLocalizer localizer(room.rig(), room.map);
+  localizer.tracking = false; // frames of one time
   double worst = 0, nees = 0;
   const int frames = 20;
   for (int seed = 1; seed <= frames; ++seed) {
@@ -226,6 +227,7 @@ TEST(VlpLocalizer, LastPoseIsNoMoreThanAHint)
   Room room;
   room.lamps.push_back({"reflection of A", {0, 0, 1.6}, room.lamps[0].frequency});
   vpVlpLocalizer localizer(room.rig(), room.map);
+  localizer.tracking = false;
   ASSERT_TRUE(localizer.process(room.frame()).fix.valid);
   room.x = 0.25;
   room.y = 0.1;

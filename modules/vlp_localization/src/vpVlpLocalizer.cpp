@@ -62,7 +62,8 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
 
   // Section 2.1.3: the pose from the rays to these lamps: each corrects the one that the filter carries, or, at
   // first, two or all that agree with each other.
-  if (tracking && filter.started()) {
+  const bool carried = tracking && filter.started();
+  if (carried) {
     follow(location, usable);
   } else {
     location.fix = solve(location.observations, usable);
@@ -76,7 +77,7 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
   if (location.fix.valid && !location.fix.ambiguous) {
     m_lastPose = {location.fix, frame.timestamp};
   }
-  location.tracked = tracking && location.fix.valid && !location.fix.ambiguous;
+  location.tracked = carried && filter.started() && m_followed > 0 && location.fix.valid;
   location.state = filter.state(location.fix);
   return location;
 }
@@ -172,7 +173,24 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
     filter.doubtClaims();
     startAt(location);
   }
-  location.fix = correct(location, members);
+  addMotionDoubt(location, members);
+  vpVlpLocation corrected = location;
+  correct(corrected, members);
+}
+
+//! What a single frame's pose is off by where the robot moved between its time stamp and the lamps' lines.
+void vpVlpLocalizer::addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const
+{
+  double since = 0; // s
+  for (size_t i : members) {
+    since += (timeOf(location, location.observations[i]) - location.timestamp) / static_cast<double>(members.size());
+  }
+  const Eigen::Matrix3d doubt =
+      since * since * (filter.velocityCovariance() + filter.velocity() * filter.velocity().transpose());
+  for (int i : {0, 1}) {
+    location.fix.covariance(i, i) += std::max(doubt(0, 0), doubt(1, 1)); // whatever its heading
+  }
+  location.fix.covariance(5, 5) += doubt(2, 2);
 }
 
 //! With the velocity that the last pose tells, where there is one.
