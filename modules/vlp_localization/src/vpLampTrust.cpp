@@ -77,17 +77,17 @@ Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMat
   return extent;
 }
 
-std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &seen,
-                                 const Eigen::Vector2d &expectedExtent)
+std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &seen, const vpLampExtent &expected)
 {
   const auto found = m_past.find(lamp.id);
-  if (found == m_past.end() || found->second.sizes < known || seen.cut || !(expectedExtent.minCoeff() > 0)) {
+  if (found == m_past.end() || found->second.sizes < known || seen.cut || !(expected.size.minCoeff() > 0)) {
     return "";
   }
   Past &past = found->second;
-  const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expectedExtent);
+  const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expected.size);
   static const double coarse = 0.15; // px
-  const Eigen::Vector2d tolerance = sizeTolerance * past.size + coarse * expectedExtent.cwiseInverse();
+  const Eigen::Vector2d tolerance =
+      (sizeTolerance + gate * expected.stretch) * past.size + coarse * expected.size.cwiseInverse();
   const Eigen::Vector2d more = (size - past.size).cwiseQuotient(tolerance);
   past.smaller = more.minCoeff() < -1 || seen.outline.shape != past.shape ? past.smaller + 1 : 0;
   past.larger = more.maxCoeff() > 1 && past.smaller == 0 ? past.larger + 1 : 0;
@@ -119,16 +119,26 @@ Eigen::Vector2d vpLampTrust::offset(const vpLamp &lamp) const
   return past.offset.dot(past.doubt.inverse() * past.offset) > chance ? past.offset : Eigen::Vector2d(0, 0);
 }
 
+void vpLampTrust::forgetPlaces()
+{
+  for (auto &[id, past] : m_past) {
+    past.frames = 0;
+    past.offset.setZero();
+    past.doubt.setZero();
+  }
+}
+
 void vpLampTrust::believe(const vpLamp &lamp, const vpLampObservation &seen,
-                          const vpVlpFilter::Innovation &innovation, const Eigen::Vector2d &expectedExtent)
+                          const vpVlpFilter::Innovation &innovation, const vpLampExtent &expected)
 {
   Past &past = m_past[lamp.id];
   ++past.frames;
   const double share = std::max(memory, 1.0 / past.frames);
   past.offset += share * (innovation.ray - past.offset);
   past.doubt = (1 - share) * (1 - share) * past.doubt + share * share * innovation.covariance;
-  if (!seen.cut && expectedExtent.minCoeff() > 0) {
-    const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expectedExtent);
+  static const double sure = 0.004; // of the stretch
+  if (!seen.cut && expected.size.minCoeff() > 0 && expected.stretch < sure) {
+    const Eigen::Vector2d size = seenExtent(seen.outline).cwiseQuotient(expected.size);
     past.shape = past.sizes == 0 ? seen.outline.shape : past.shape;
     ++past.sizes;
     past.size += std::max(memory, 1.0 / past.sizes) * (size - past.size);

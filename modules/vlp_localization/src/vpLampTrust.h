@@ -13,6 +13,12 @@
 
 BEGIN_VISP_NAMESPACE
 
+//! Of a lamp in the picture.
+struct vpLampExtent {
+  Eigen::Vector2d size = Eigen::Vector2d::Zero(); // px, width and height; 0 where it is not in front of the camera
+  double stretch = 0; // standard deviation, as a share: by the robot's velocity during the readout
+};
+
 /*!
   Whether a lamp looks as it did in the frames before, from where the filter expects the robot: in its place, and
   as large. One that somebody begins to hide drags its outline along, a little more in each frame, and no
@@ -27,7 +33,7 @@ public:
   double gate = 4;               // standard deviations
 
   //! Whether it is as large and of the shape as before; else why not, in a few words.
-  std::string changed(const vpLamp &lamp, const vpLampObservation &seen, const Eigen::Vector2d &expectedExtent);
+  std::string changed(const vpLamp &lamp, const vpLampObservation &seen, const vpLampExtent &expected);
 
   //! Whether it is where the filter expects it.
   bool inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const;
@@ -36,7 +42,10 @@ public:
   Eigen::Vector2d offset(const vpLamp &lamp) const;
 
   void believe(const vpLamp &lamp, const vpLampObservation &seen, const vpVlpFilter::Innovation &innovation,
-               const Eigen::Vector2d &expectedExtent);
+               const vpLampExtent &expected);
+
+  //! Where lamps were seen; how large they are stays known.
+  void forgetPlaces();
   /*!
     Width and height, px, of the picture of a lamp's disc or square as seen from \e wMb by a base that moves at
     \e velocity (m/s along x and y of b, rad/s): lines read while the lamp's picture runs ahead of the readout

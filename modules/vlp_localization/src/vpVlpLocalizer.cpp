@@ -93,6 +93,7 @@ bool vpVlpLocalizer::inOrder(double time)
     filter.stop();
     tracker.reset();
     m_lastPose.reset();
+    *m_trust = vpLampTrust();
   }
   m_lastFrame = time;
   return true;
@@ -160,7 +161,7 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
 {
   filter.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
   startAt(location);
-  *m_trust = vpLampTrust();
+  m_trust->forgetPlaces();
   m_trust->mapTolerance = mapTolerance;
   m_disagreements = m_contradictions = m_followed = 0;
   std::vector<size_t> members;
@@ -210,6 +211,7 @@ void vpVlpLocalizer::startAt(const vpVlpLocation &location)
 */
 void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
+  const std::vector<size_t> whole = unchanged(location, usable);
   const vpVlpFilter before = filter;
   const vpLampTrust trusted = *m_trust;
   const std::vector<vpLampObservation> seen = location.observations;
@@ -223,28 +225,28 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     location.observations = seen;
   };
   bool roused = false;
-  location.fix = correct(location, usable);
-  if (accepted() == 0 || 2 * accepted() < usable.size() ||
+  location.fix = correct(location, whole);
+  if (accepted() == 0 || 2 * accepted() < whole.size() ||
       !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
     roused = accepted() > 0;
     again();
     filter.rouse();
-    location.fix = correct(location, usable);
+    location.fix = correct(location, whole);
   }
-  if (2 * accepted() < usable.size()) {
+  if (2 * accepted() < whole.size()) {
     again();
     filter.rouse();
     filter.forgetVelocity();
-    location.fix = correct(location, usable);
+    location.fix = correct(location, whole);
   }
-  const bool contradictory = contradicts(location, usable, roused);
-  const bool few = 2 * accepted() < usable.size(), lost = filter.state(location.fix) == vpVlpFilter::State::lost;
+  const bool contradictory = contradicts(location, whole, roused);
+  const bool few = 2 * accepted() < whole.size(), lost = filter.state(location.fix) == vpVlpFilter::State::lost;
   m_disagreements = few ? m_disagreements : 0;
   if (!few && !lost && !contradictory) {
     return;
   }
   std::vector<vpLampObservation> apart = seen;
-  const vpVlpFix alone = solve(apart, usable);
+  const vpVlpFix alone = solve(apart, whole);
   m_disagreements += alone.valid ? 1 : 0;
   static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
   if (alone.valid && !alone.ambiguous && (lost || contradictory || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
@@ -322,16 +324,11 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
     const Eigen::Vector2d offset = m_trust->offset(*lamp);
     sight.covariance += offset * offset.transpose();
     const vpVlpFilter::Innovation innovation = filter.innovation(sight);
-    const Eigen::Vector2d extent = expectedExtent(*lamp);
-    seen.remark = m_trust->changed(*lamp, seen, extent);
-    if (!seen.remark.empty()) {
-      continue;
-    }
     if (!innovation.inFront || !m_trust->inPlace(*lamp, innovation)) {
       seen.remark = misplaced;
       continue;
     }
-    m_trust->believe(*lamp, seen, innovation, extent);
+    m_trust->believe(*lamp, seen, innovation, expectedExtent(*lamp));
     filter.update(sight);
     seen.accepted = true;
     seen.remark.clear();
@@ -348,19 +345,34 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
   return fix;
 }
 
-//! Width and height of a lamp in the picture, px; 0 where the robot's velocity is too uncertain to say.
-Eigen::Vector2d vpVlpLocalizer::expectedExtent(const vpLamp &lamp) const
+//! Those that are as large and of the shape as before; the others get a remark.
+std::vector<size_t> vpVlpLocalizer::unchanged(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
-  static const double sure = 0.004; // share of the extent, standard deviation
+  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
+  std::vector<size_t> same;
+  for (size_t i : usable) {
+    vpLampObservation &seen = location.observations[i];
+    const std::string change =
+        lamps[i] == nullptr ? "" : m_trust->changed(*lamps[i], seen, expectedExtent(*lamps[i]));
+    if (change.empty()) {
+      same.push_back(i);
+    } else {
+      seen.remark = change;
+    }
+  }
+  return same;
+}
+
+//! Of a lamp in the picture, seen from where the filter is.
+vpLampExtent vpVlpLocalizer::expectedExtent(const vpLamp &lamp) const
+{
   const vpVlpFix fix = filter.now();
   const Eigen::Matrix3d doubt = filter.velocityCovariance();
   const double height = lamp.position.z() - fix.wMc[2][3],
                apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
   const double speed = std::sqrt(std::max(doubt(0, 0), doubt(1, 1))) + apart * std::sqrt(doubt(2, 2));
-  if (!(m_rig.camera.get_px() * speed / height * std::abs(m_lineTime) < sure)) {
-    return Eigen::Vector2d::Zero();
-  }
-  return vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
+  return {vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime),
+          m_rig.camera.get_px() * speed / std::max(height, 1e-3) * std::abs(m_lineTime)};
 }
 
 //! Lamps in the order in which their lines were read.

@@ -21,6 +21,7 @@
 BEGIN_VISP_NAMESPACE
 
 class vpLampTrust;
+struct vpLampExtent;
 
 //! What one frame gave.
 struct VISP_EXPORT vpVlpLocation {
@@ -101,7 +102,8 @@ private:
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
 
-  Eigen::Vector2d expectedExtent(const vpLamp &lamp) const;
+  std::vector<size_t> unchanged(vpVlpLocation &location, const std::vector<size_t> &usable);
+  vpLampExtent expectedExtent(const vpLamp &lamp) const;
   double timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const;
 
   //! The map's lamp of each, by its id; nullptr: none.
