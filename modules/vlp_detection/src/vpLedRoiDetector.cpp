@@ -280,8 +280,7 @@ void moveTo(vpLedRoi &roi, const cv::Point &origin, const cv::Size &picture)
     chord.last += origin.x;
   }
   roi.cutAcross = roi.box.x <= 0 || roi.box.br().x >= picture.width;
-  roi.cutAlong =
-      roi.box.y <= 0 || roi.box.br().y >= picture.height || vpChordShape::mayGoOn(roi, picture);
+  roi.cutAlong = roi.box.y <= 0 || roi.box.br().y >= picture.height || vpChordShape::mayGoOn(roi, picture);
 }
 
 //! Larger by as much as the regions that its sides may cut, on these sides. Itself where there are none.
@@ -291,11 +290,12 @@ cv::Rect grownAround(const cv::Rect &window, const std::vector<vpLedRoi> &rois, 
   for (const vpLedRoi &roi : rois) {
     // A dark stripe may part a lamp from the rest that lies beyond the window.
     const int gap = 1 + roi.box.width / 2;
-    const bool cut = roi.box.x <= window.x || roi.box.br().x >= window.br().x || roi.box.y <= window.y + gap ||
-                     roi.box.br().y >= window.br().y - gap;
+    const bool cut = roi.box.x <= window.x || roi.box.br().x >= window.br().x ||
+                     roi.box.y <= window.y + gap || roi.box.br().y >= window.br().y - gap;
     const int side = std::max(roi.box.width, roi.box.height);
     if (cut) {
-      grown |= cv::Rect(roi.box.x - side, roi.box.y - side, roi.box.width + 2 * side, roi.box.height + 2 * side);
+      grown |=
+          cv::Rect(roi.box.x - side, roi.box.y - side, roi.box.width + 2 * side, roi.box.height + 2 * side);
     }
   }
   return grown & picture;

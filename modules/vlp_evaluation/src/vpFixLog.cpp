@@ -118,9 +118,8 @@ vpFixLog vpFixLog::load(const std::string &filename)
 
 size_t vpFixLog::count() const
 {
-  return static_cast<size_t>(std::count_if(fixes.begin(), fixes.end(), [](const vpLoggedFix &fix) {
-    return fix.hasPosition();
-  }));
+  return static_cast<size_t>(
+      std::count_if(fixes.begin(), fixes.end(), [](const vpLoggedFix &fix) { return fix.hasPosition(); }));
 }
 
 vpTrajectory vpFixLog::trajectory() const

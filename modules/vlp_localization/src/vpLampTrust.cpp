@@ -16,9 +16,9 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const int known = 3;       // frames after which a lamp's place and size are its own
+const int known = 3;        // frames after which a lamp's place and size are its own
 const double memory = 0.03; // share of the latest frame in a running mean: slower than people walk
-const int patience = 60;   // frames in a row that it takes to believe that a lamp has become smaller
+const int patience = 60;    // frames in a row that it takes to believe that a lamp has become smaller
 
 Eigen::Vector2d seenExtent(const vpLampOutline &outline)
 {
@@ -77,7 +77,8 @@ Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMat
   return extent;
 }
 
-std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &seen, const vpLampExtent &expected)
+std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &seen,
+                                 const vpLampExtent &expected)
 {
   const auto found = m_past.find(lamp.id);
   if (found == m_past.end() || found->second.sizes < known || seen.cut || !(expected.size.minCoeff() > 0)) {
@@ -96,7 +97,9 @@ std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &se
     past.shape = seen.outline.shape;
     past.smaller = past.larger = 0;
   }
-  return past.smaller > 0 ? "not as large as it was: partly hidden" : past.larger > 0 ? "larger than it was" : "";
+  return past.smaller > 0  ? "not as large as it was: partly hidden"
+         : past.larger > 0 ? "larger than it was"
+                           : "";
 }
 
 bool vpLampTrust::inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const

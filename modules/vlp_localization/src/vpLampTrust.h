@@ -15,22 +15,24 @@ BEGIN_VISP_NAMESPACE
 
 //! Of a lamp in the picture.
 struct vpLampExtent {
-  Eigen::Vector2d size = Eigen::Vector2d::Zero(); // px, width and height; 0 where it is not in front of the camera
-  double stretch = 0; // standard deviation, as a share: by the robot's velocity during the readout
+  Eigen::Vector2d size =
+      Eigen::Vector2d::Zero(); // px, width and height; 0 where it is not in front of the camera
+  double stretch = 0;          // standard deviation, as a share: by the robot's velocity during the readout
 };
 
 /*!
-  Whether a lamp looks as it did in the frames before, from where the filter expects the robot: in its place, and
-  as large. One that somebody begins to hide drags its outline along, a little more in each frame, and no
+  Whether a lamp looks as it did in the frames before, from where the filter expects the robot: in its place,
+  and as large. One that somebody begins to hide drags its outline along, a little more in each frame, and no
   Mahalanobis distance of one frame shows it; but it looks smaller.
 */
 class vpLampTrust
 {
 public:
-  double mapTolerance = 0.03; // m, how far a lamp that was not seen before may hang from where the map says, sigma
+  double mapTolerance =
+      0.03; // m, how far a lamp that was not seen before may hang from where the map says, sigma
   double placeTolerance = 0.0005; // m, how far one may then seem to move, sigma
-  double sizeTolerance = 0.015;   // share of its extent by which a lamp may seem smaller or larger than it was
-  double gate = 4;               // standard deviations
+  double sizeTolerance = 0.015; // share of its extent by which a lamp may seem smaller or larger than it was
+  double gate = 4;              // standard deviations
 
   //! Whether it is as large and of the shape as before; else why not, in a few words.
   std::string changed(const vpLamp &lamp, const vpLampObservation &seen, const vpLampExtent &expected);
@@ -38,7 +40,8 @@ public:
   //! Whether it is where the filter expects it.
   bool inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const;
 
-  //! What it is off by on average, where that is more than chance, normalised units: to be added to its doubt.
+  //! What it is off by on average, where that is more than chance, normalised units: to be added to its
+  //! doubt.
   Eigen::Vector2d offset(const vpLamp &lamp) const;
 
   void believe(const vpLamp &lamp, const vpLampObservation &seen, const vpVlpFilter::Innovation &innovation,
@@ -47,9 +50,9 @@ public:
   //! Where lamps were seen; how large they are stays known.
   void forgetPlaces();
   /*!
-    Width and height, px, of the picture of a lamp's disc or square as seen from \e wMb by a base that moves at
-    \e velocity (m/s along x and y of b, rad/s): lines read while the lamp's picture runs ahead of the readout
-    see it longer.
+    Width and height, px, of the picture of a lamp's disc or square as seen from \e wMb by a base that moves
+    at \e velocity (m/s along x and y of b, rad/s): lines read while the lamp's picture runs ahead of the
+    readout see it longer.
   */
   static Eigen::Vector2d extentOf(const vpLamp &lamp, const vpHomogeneousMatrix &wMb,
                                   const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime);
@@ -61,12 +64,12 @@ public:
 private:
   struct Past {
     int frames = 0;
-    int sizes = 0;                                     // frames that told its size
-    int smaller = 0, larger = 0;                       // frames in a row that it was so
+    int sizes = 0;               // frames that told its size
+    int smaller = 0, larger = 0; // frames in a row that it was so
     vpLampOutline::Shape shape = vpLampOutline::Shape::region;
-    Eigen::Vector2d offset = Eigen::Vector2d::Zero();  // normalised units, running mean of the innovations
-    Eigen::Matrix2d doubt = Eigen::Matrix2d::Zero();   // of that mean, were it 0
-    Eigen::Vector2d size = Eigen::Vector2d::Zero();    // extent over the expected one
+    Eigen::Vector2d offset = Eigen::Vector2d::Zero(); // normalised units, running mean of the innovations
+    Eigen::Matrix2d doubt = Eigen::Matrix2d::Zero();  // of that mean, were it 0
+    Eigen::Vector2d size = Eigen::Vector2d::Zero();   // extent over the expected one
   };
   std::unordered_map<std::string, Past> m_past; // by id
 };

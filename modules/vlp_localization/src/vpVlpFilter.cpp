@@ -92,9 +92,24 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   sigma.segment<3>(mount) = m_rig.translationSigma;
   sigma(mount + 3) = m_rig.rotationSigma.z();
   m_P = sigma.cwiseAbs2().asDiagonal();
-  static const double steady = 0.1; // its first two frames tell whether camera and map are as good as they say
+  static const double steady =
+      0.1; // its first two frames tell whether camera and map are as good as they say
   m_unrest = steady;
   forgetVelocity();
+  m_startP = m_P;
+}
+
+void vpVlpFilter::startAgain()
+{
+  const Eigen::Vector3d velocity = m_x.segment<3>(vx);
+  const Eigen::Index start = lamps;
+  Vector state = Vector::Zero(start);
+  state.head<6>() = m_x.segment<6>(mark0);
+  state.segment<3>(vx) = velocity;
+  m_x = state;
+  m_P = m_startP;
+  m_lamps.clear();
+  m_time = m_markTime;
 }
 
 void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
@@ -115,6 +130,7 @@ void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
     m_P(i, i) = i == w ? square(turn / since) + square(m_unrest * turnAcceleration) * since
                        : square(place / since) + square(m_unrest * acceleration) * since;
   }
+  m_startP = m_P;
 }
 
 void vpVlpFilter::doubtClaims()
@@ -133,7 +149,7 @@ void vpVlpFilter::forgetVelocity()
 bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
 {
   static const double chance = 2, beyond = 6; // standard deviations of a chi-square
-  static const double calming = 0.8, rousing = 3;
+  static const double calming = 0.6, rousing = 3;
   const double excess = (chiSquare - degreesOfFreedom) / std::sqrt(2.0 * std::max(1, degreesOfFreedom));
   m_unrest = std::clamp(m_unrest * (excess > chance ? rousing : calming), calmest, 1.0);
   return excess < beyond;
@@ -175,7 +191,7 @@ void vpVlpFilter::move(double dt, bool accelerates)
   m_P = F * m_P * F.transpose();
 
   const double t = std::abs(dt);
-  m_P(z, z) += square(drift) * t;
+  m_P(z, z) += square(m_unrest * drift) * t;
   if (freeAttitude) {
     m_P(roll, roll) += square(tiltDrift) * t;
     m_P(pitch, pitch) += square(tiltDrift) * t;
@@ -262,6 +278,7 @@ void vpVlpFilter::advance(double time)
 void vpVlpFilter::mark(double time)
 {
   advance(time);
+  m_markTime = m_time;
   const Eigen::Index n = m_x.size();
   Matrix copy = Matrix::Identity(n, n);
   copy.block<6, 6>(mark0, mark0).setZero();
@@ -328,7 +345,7 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
   if (predicted.inFront) {
     innovation.ray = lamp.ray - predicted.ray;
     innovation.covariance =
-        predicted.H * m_P * predicted.H.transpose() + predicted.ownDoubt + lamp.covariance;
+        predicted.H * m_P * predicted.H.transpose() + predicted.ownDoubt + m_noise * lamp.covariance;
     innovation.depth = predicted.depth;
   }
   return innovation;
@@ -339,10 +356,28 @@ void vpVlpFilter::update(const vpLampSight &lamp)
   if (placeSigma(lamp) > 0 && lampIndex(lamp) < 0) {
     addLamp(lamp);
   }
+  weighNoise(lamp);
   const Predicted predicted = predict(lamp);
   if (predicted.inFront) {
-    measure(predicted.H, lamp.ray - predicted.ray, lamp.covariance);
+    measure(predicted.H, lamp.ray - predicted.ray, m_noise * lamp.covariance);
   }
+}
+
+/*!
+  What lamps' points scatter by, as a share of what they say: by innovations that are hardly anything else,
+  those of a calm robot whose pose is known better than its lamps are seen (covariance matching, Mehra 1972).
+*/
+void vpVlpFilter::weighNoise(const vpLampSight &lamp)
+{
+  static const double calm = 0.03, noisy = 0.6; // share of the accelerations; of an innovation's variance
+  static const double gain = 0.02, outlying = 9, least = 0.25, most = 9;
+  const Innovation seen = innovation(lamp);
+  if (!seen.inFront || m_unrest > calm ||
+      m_noise * lamp.covariance.trace() < noisy * seen.covariance.trace()) {
+    return;
+  }
+  const double excess = 0.5 * std::min(seen.distance(0), outlying) - 1;
+  m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
 }
 
 void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matrix &R)

@@ -23,8 +23,7 @@ const char *const misplaced = "not where the robot's motion has it";
 
 vpVlpLocalizer::vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map)
     : tracker(rig, map), matcher(rig, map), filter(rig), m_rig(rig), m_map(map),
-      m_lineTime(rig.lineTiming().meanLineTime()),
-      m_trust(std::make_unique<vpLampTrust>())
+      m_lineTime(rig.lineTiming().meanLineTime()), m_trust(std::make_unique<vpLampTrust>())
 {
   for (size_t i = 0; i < map.lamps.size(); ++i) {
     m_lampOf.emplace(map.lamps[i].id, i);
@@ -60,8 +59,8 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
     doubt = match.refusal;
   }
 
-  // Section 2.1.3: the pose from the rays to these lamps: each corrects the one that the filter carries, or, at
-  // first, two or all that agree with each other.
+  // Section 2.1.3: the pose from the rays to these lamps: each corrects the one that the filter carries, or,
+  // at first, two or all that agree with each other.
   const bool carried = tracking && filter.started();
   if (carried) {
     follow(location, usable);
@@ -115,8 +114,9 @@ std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
   if (!filter.started()) {
     return windows;
   }
-  static const double readout = 0.03, farthest = 3; // s, of a frame, about; heights of a lamp above the camera
-  static const double doubtful = 0.1;               // rad: the lamps are then anywhere
+  static const double readout = 0.03,
+                      farthest = 3;   // s, of a frame, about; heights of a lamp above the camera
+  static const double doubtful = 0.1; // rad: the lamps are then anywhere
   const vpVlpFix fix = filter.fixAt(time + readout);
   const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
                turn = std::sqrt(fix.covariance(5, 5));
@@ -127,15 +127,14 @@ std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
       continue;
     }
     Eigen::Vector2d middle;
-    const Eigen::Vector2d extent =
-        vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
+    const Eigen::Vector2d extent = vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
     if (!vpLampTrust::pixelOf(lamp.position, fix.wMc.inverse(), m_rig, middle)) {
       continue;
     }
     static const double sigmas = 3, around = 0.7; // of the extent, on each side
     const double doubt = sigmas * m_rig.camera.get_px() * (place + turn * apart) / height;
-    const Eigen::Vector2d half = (std::isfinite(lamp.size) ? 0.5 + around : 0.2) * extent +
-                                 Eigen::Vector2d(doubt, doubt);
+    const Eigen::Vector2d half =
+        (std::isfinite(lamp.size) ? 0.5 + around : 0.2) * extent + Eigen::Vector2d(doubt, doubt);
     const Eigen::Vector2d least = (middle - half).cwiseMax(0.0),
                           most = (middle + half).cwiseMin(Eigen::Vector2d(m_rig.width - 1, m_rig.height - 1));
     if ((least.array() < most.array()).all()) {
@@ -148,7 +147,8 @@ std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
 //! The pose of these lamps alone, of two of them or of all that agree with each other.
 vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const
 {
-  const vpLampConsensus consensus(lampsOf(observations), m_rig, observations, mapTolerance, outlierLikelihood);
+  const vpLampConsensus consensus(lampsOf(observations), m_rig, observations, mapTolerance,
+                                  outlierLikelihood);
   const vpVlpFix fix = consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
     return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
   });
@@ -174,9 +174,12 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
     filter.doubtClaims();
     startAt(location);
   }
+  vpVlpLocation first = location, second = location;
+  correct(first, members);
+  filter.startAgain();
+  m_trust->forgetPlaces();
   addMotionDoubt(location, members);
-  vpVlpLocation corrected = location;
-  correct(corrected, members);
+  correct(second, members);
 }
 
 //! What a single frame's pose is off by where the robot moved between its time stamp and the lamps' lines.
@@ -184,7 +187,8 @@ void vpVlpLocalizer::addMotionDoubt(vpVlpLocation &location, const std::vector<s
 {
   double since = 0; // s
   for (size_t i : members) {
-    since += (timeOf(location, location.observations[i]) - location.timestamp) / static_cast<double>(members.size());
+    since += (timeOf(location, location.observations[i]) - location.timestamp) /
+             static_cast<double>(members.size());
   }
   const Eigen::Matrix3d doubt =
       since * since * (filter.velocityCovariance() + filter.velocity() * filter.velocity().transpose());
@@ -240,7 +244,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     location.fix = correct(location, whole);
   }
   const bool contradictory = contradicts(location, whole, roused);
-  const bool few = 2 * accepted() < whole.size(), lost = filter.state(location.fix) == vpVlpFilter::State::lost;
+  const bool few = 2 * accepted() < whole.size(),
+             lost = filter.state(location.fix) == vpVlpFilter::State::lost;
   m_disagreements = few ? m_disagreements : 0;
   if (!few && !lost && !contradictory) {
     return;
@@ -249,7 +254,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   const vpVlpFix alone = solve(apart, whole);
   m_disagreements += alone.valid ? 1 : 0;
   static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
-  if (alone.valid && !alone.ambiguous && (lost || contradictory || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
+  if (alone.valid && !alone.ambiguous &&
+      (lost || contradictory || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
     if (contradictory) {
       filter.doubtClaims();
     }
@@ -267,24 +273,31 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
 }
 
 /*!
-  How far the lamps of a frame contradict each other under what camera and map say of themselves, whatever pose and
-  constant velocity the robot has: their innovations in a filter that knows neither, as standard deviations of a
-  chi-square beyond its mean.
+  How far the lamps of a frame contradict each other under what camera and map say of themselves, whatever
+  pose and constant velocity the robot has: their innovations in a filter that knows neither, as standard
+  deviations of a chi-square beyond its mean.
 */
 double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const
 {
   const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
   vpVlpFilter alone = filter;
   alone.start(location.fix.wMb, location.timestamp);
-  alone.calm();
   double chiSquare = 0, degrees = 0;
-  for (size_t i : inTime(location, usable)) {
-    if (lamps[i] != nullptr && location.observations[i].accepted) {
-      const vpLampSight sight = vpLampSight::from(*lamps[i], location.observations[i], m_rig.camera);
-      alone.advance(timeOf(location, location.observations[i]));
-      chiSquare += alone.innovation(sight).distance(0);
-      degrees += 2;
-      alone.update(sight);
+  for (int round = 0; round < 2; ++round) {
+    chiSquare = degrees = 0;
+    alone.calm();
+    alone.mark(location.timestamp);
+    for (size_t i : inTime(location, usable)) {
+      if (lamps[i] != nullptr && location.observations[i].accepted) {
+        const vpLampSight sight = vpLampSight::from(*lamps[i], location.observations[i], m_rig.camera);
+        alone.advance(timeOf(location, location.observations[i]));
+        chiSquare += alone.innovation(sight).distance(0);
+        degrees += 2;
+        alone.update(sight);
+      }
+    }
+    if (round == 0) {
+      alone.startAgain();
     }
   }
   return (chiSquare - degrees) / std::sqrt(2 * std::max(1.0, degrees));
@@ -294,9 +307,10 @@ double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<s
   Whether lamps contradict what camera and map say of themselves, frame after frame: each other, or any but a
   robot that never comes to rest. A frame or two of it may be one that starts or stops.
 */
-bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused)
+bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable,
+                                 bool roused)
 {
-  static const int young = 3;                       // frames since the start: its velocity rests on the claims
+  static const int young = 3; // frames since the start: its velocity rests on the claims
   const int often = ++m_followed <= young && !filter.doubtsClaims() ? 1 : 8; // frames
   const auto apart = std::count_if(usable.begin(), usable.end(), [&location](size_t i) {
     return location.observations[i].remark == misplaced;

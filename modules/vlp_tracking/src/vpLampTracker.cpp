@@ -61,9 +61,9 @@ struct vpLampTracker::Track {
   unsigned int number = 0;
   std::unique_ptr<vpTargetTracker> target;
   vpLedIdEvidence evidence;
-  vpRect window;         // px, where it is expected in the frame at hand
-  double seenLast = 0;   // s
-  bool taken = false;    // by an observation of the frame at hand
+  vpRect window;       // px, where it is expected in the frame at hand
+  double seenLast = 0; // s
+  bool taken = false;  // by an observation of the frame at hand
 };
 
 vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detector(rig, map), m_rig(rig) {}
@@ -160,9 +160,9 @@ void vpLampTracker::assign()
     for (size_t t = 0; t < m_tracks.size(); ++t) {
       const vpImagePoint centre = m_tracks[t].target->center();
       const double size = std::hypot(m_tracks[t].window.getWidth(), m_tracks[t].window.getHeight());
-      const double apart = std::hypot(seen.outline.centre.x() - centre.get_u(),
-                                      seen.outline.centre.y() - centre.get_v()) /
-                           std::max({size, box.getWidth(), box.getHeight(), 1.0});
+      const double apart =
+          std::hypot(seen.outline.centre.x() - centre.get_u(), seen.outline.centre.y() - centre.get_v()) /
+          std::max({size, box.getWidth(), box.getHeight(), 1.0});
       if (apart < farthest) {
         pairs.emplace_back(apart + (m_tracks[t].evidence.agrees(seen.features) ? 0 : disagreement), i, t);
       }

@@ -51,8 +51,8 @@ public:
   bool detect(const vpImage<unsigned char> &I) override;
 
   /*!
-    The same inside windows only, pixels; those that overlap are looked at as one. A lamp that a window cuts is
-    seen whole all the same, and so may be a neighbour.
+    The same inside windows only, pixels; those that overlap are looked at as one. A lamp that a window cuts
+    is seen whole all the same, and so may be a neighbour.
   */
   bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows);
 

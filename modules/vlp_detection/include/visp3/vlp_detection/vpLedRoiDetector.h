@@ -71,8 +71,8 @@ public:
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines) const;
 
   /*!
-    The same of all regions that \e window (x: samples, y: lines) shows a part of. Where its sides may cut one,
-    a larger one is looked at.
+    The same of all regions that \e window (x: samples, y: lines) shows a part of. Where its sides may cut
+    one, a larger one is looked at.
   */
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window) const;
 };

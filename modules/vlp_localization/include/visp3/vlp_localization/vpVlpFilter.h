@@ -17,20 +17,23 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Extended Kalman filter of a robot that looks at lamps: each lamp's image point is a measurement of its own, at
-  the time of its own line, so that one lamp still corrects the pose and a rolling shutter bends nothing.
+  Extended Kalman filter of a robot that looks at lamps: each lamp's image point is a measurement of its own,
+  at the time of its own line, so that one lamp still corrects the pose and a rolling shutter bends nothing.
 
   The state, with its covariance:
   - the pose: x, y, z, yaw, and roll and pitch about x and y of b. The last two are constants of the rig, as
     uncertain as its rotationSigma says (known where that is 0), unless the attitude is free;
   - the velocity of the base along x and y of b and its turn rate, constant but for random accelerations;
   - the odometry's errors: scales of speed and turn rate, bias of the turn rate;
-  - what the rig's mount and the map's lamps may be off by, where they state a standard deviation. These errors
-    are the same in every frame, which no averaging over frames takes away: as states they are estimated where
-    the motion shows them and keep the covariance honest where it does not (Schmidt 1966; Smith, Self and
+  - what the rig's mount and the map's lamps may be off by, where they state a standard deviation. These
+  errors are the same in every frame, which no averaging over frames takes away: as states they are estimated
+  where the motion shows them and keep the covariance honest where it does not (Schmidt 1966; Smith, Self and
     Cheeseman 1990).
 
   The measurement is that of the solvers: ray = projection of bRc^T (wRb^T (P - wtb) - btc).
+
+  Two variances are weighed by the innovations themselves: those of the random accelerations, which are small
+  while a robot keeps its velocity, and those of the lamps' image points.
 
   Odometry is the velocity's mean over the interval of each sample: between samples the base moves on the arc
   that they say, and accelerates at random where there is none.
@@ -60,23 +63,24 @@ public:
   double lostSigma = 0.2;      // m
   double lostYaw = 0.6;        // rad
 
-  double acceleration = 0.5;         // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
-  double turnAcceleration = 3;       // rad/s^2/sqrt(Hz), likewise
-  double calmest = 0.001;            // share of both that is left of them where innovations are small for long
-  double drift = 0.0005;             // m/sqrt(s), of z: a floor is not quite flat
-  double tiltDrift = 0.05;           // rad/sqrt(s), of roll and pitch where the attitude is free
-  double startVelocity = 0.2;        // m/s, standard deviation at the start
-  double startTurnRate = 1.5;        // rad/s, likewise
-  double odometrySpeed = 0.002;      // m/s, standard deviation of a sample; encoders count ticks
-  double odometryShare = 0.01;       // likewise as a share of speed and turn rate: wheels slip now and then
-  double odometryTurnRate = 0.005;   // rad/s, likewise
-  double odometryScale = 0.02;       // standard deviation of the speed's scale: a slip that stays
-  double odometryTurnScale = 0.01;   // of the turn rate's scale
-  double odometryTurnBias = 0.002;   // rad/s, of the turn rate's bias
-  double sidewaysSpeed = 0.002;      // m/s, standard deviation of the speed sideways, where there is odometry
-  double claimedTilt = 0.004;        // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
-  double claimedPlace = 0.002;       // m, likewise to each coordinate of each lamp
-  bool freeAttitude = false;         // roll and pitch change, and are as uncertain as the fix at the start
+  double acceleration = 0.5;   // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
+  double turnAcceleration = 3; // rad/s^2/sqrt(Hz), likewise
+  double calmest = 0.0002;     // share of both that is left of them where innovations are small for long
+  double drift = 0.002;        // m/sqrt(s), of z where the robot is restless: a floor is not quite flat
+  double tiltDrift = 0.05;     // rad/sqrt(s), of roll and pitch where the attitude is free
+  double startVelocity = 0.2;  // m/s, standard deviation at the start
+  double startTurnRate = 1.5;  // rad/s, likewise
+  double odometrySpeed = 0.002;    // m/s, standard deviation of a sample; encoders count ticks
+  double odometryShare = 0.01;     // likewise as a share of speed and turn rate: wheels slip now and then
+  double odometryTurnRate = 0.005; // rad/s, likewise
+  double odometryScale = 0.02;     // standard deviation of the speed's scale: a slip that stays
+  double odometryTurnScale = 0.01; // of the turn rate's scale
+  double odometryTurnBias = 0.002; // rad/s, of the turn rate's bias
+  double sidewaysSpeed = 0.002;    // m/s, standard deviation of the speed sideways, where there is odometry
+  double claimedTilt =
+      0.004; // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
+  double claimedPlace = 0.002; // m, likewise to each coordinate of each lamp
+  bool freeAttitude = false;   // roll and pitch change, and are as uncertain as the fix at the start
 
   explicit vpVlpFilter(const vpVlpRig &rig);
 
@@ -85,6 +89,9 @@ public:
     are to follow as updates.
   */
   void start(const vpHomogeneousMatrix &wMb, double time);
+  //! The same start once more, linearised about what the lamps since then have shown: their marked() pose and
+  //! velocity. The lamps are to follow again.
+  void startAgain();
   void stop() { m_started = false; }
   bool started() const { return m_started; }
 
@@ -100,10 +107,10 @@ public:
 
   //! What a lamp's ray says, before it is believed.
   struct Innovation {
-    bool inFront = false;                               // of the camera, else the rest means nothing
-    Eigen::Vector2d ray = Eigen::Vector2d::Zero();      // measured minus predicted, normalised units
+    bool inFront = false;                                 // of the camera, else the rest means nothing
+    Eigen::Vector2d ray = Eigen::Vector2d::Zero();        // measured minus predicted, normalised units
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // as predicted, the measurement's own included
-    double depth = 0;                                   // m, of the lamp along the camera's axis
+    double depth = 0;                                     // m, of the lamp along the camera's axis
     //! Mahalanobis distance squared, \e tolerance (m) added for how far lamps may hang from their place.
     double distance(double tolerance) const;
   };
@@ -113,10 +120,10 @@ public:
   void update(const vpLampSight &lamp);
 
   /*!
-    How restless the robot is, by the innovations of a frame: their Mahalanobis distances squared and degrees of
-    freedom in all. Where they are as small as expected random accelerations calm down; where they are not, they
-    rise again (covariance matching, Mehra 1972). \return False where they are beyond chance: the frame had
-    better be taken once more, after rouse().
+    How restless the robot is, by the innovations of a frame: their Mahalanobis distances squared and degrees
+    of freedom in all. Where they are as small as expected random accelerations calm down; where they are not,
+    they rise again (covariance matching, Mehra 1972). \return False where they are beyond chance: the frame
+    had better be taken once more, after rouse().
   */
   bool settle(double chiSquare, int degreesOfFreedom);
   //! The robot may start, stop or turn at any time.
@@ -137,8 +144,8 @@ public:
 
   /*!
     Predicts up to \e time and keeps the pose of then as a part of the state: what follows corrects it, too
-    (stochastic cloning, Roumeliotis and Burdick 2002). So a frame's pose is that at its time stamp, though its
-    lamps were seen later.
+    (stochastic cloning, Roumeliotis and Burdick 2002). So a frame's pose is that at its time stamp, though
+    its lamps were seen later.
   */
   void mark(double time);
   vpVlpFix marked() const;
@@ -168,7 +175,7 @@ private:
     speedScale,
     turnScale,
     turnBias,
-    mount,            // translation in b, m; heading about z of b
+    mount,             // translation in b, m; heading about z of b
     mark0 = mount + 4, // x to pitch, at the mark
     lamps = mark0 + 6
   };
@@ -180,6 +187,7 @@ private:
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
   double placeSigma(const vpLampSight &lamp) const { return std::hypot(lamp.positionSigma, m_placeDoubt); }
   void addLamp(const vpLampSight &lamp);
+  void weighNoise(const vpLampSight &lamp);
   vpVlpFix fixOf(Index first) const;
   void measure(const Matrix &H, const Vector &innovation, const Matrix &R);
   void move(double dt, bool accelerates);
@@ -187,15 +195,18 @@ private:
 
   vpVlpRig m_rig;
   bool m_started = false;
-  double m_time = 0; // s
+  double m_time = 0;     // s
+  double m_markTime = 0; // s
   Vector m_x;
   Matrix m_P;
-  std::vector<std::string> m_lamps; // ids whose errors are states, in their order
+  Matrix m_startP;                   // of m_P, at the start
+  std::vector<std::string> m_lamps;  // ids whose errors are states, in their order
   std::deque<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
   double m_tiltDoubt = 0;            // rad, added to what the rig says of roll and pitch
   double m_placeDoubt = 0;           // m, added to what the map says of its lamps
+  double m_noise = 1;                // variance of the lamps' points, as a share of the stated one
   double m_unrest = 1;               // share of the random accelerations
-  double m_followed = -1e300; // s, end of the interval whose odometry the velocity is
+  double m_followed = -1e300;        // s, end of the interval whose odometry the velocity is
 };
 
 END_VISP_NAMESPACE

@@ -25,9 +25,9 @@ struct vpLampExtent;
 
 //! What one frame gave.
 struct VISP_EXPORT vpVlpLocation {
-  double timestamp = 0;                        // s, of the frame
-  vpVlpFix fix;                                // fix.valid false and fix.refusal where there is no position
-  bool tracked = false;                        // the filter's, not of this frame alone
+  double timestamp = 0; // s, of the frame
+  vpVlpFix fix;         // fix.valid false and fix.refusal where there is no position
+  bool tracked = false; // the filter's, not of this frame alone
   vpVlpFilter::State state = vpVlpFilter::State::starting; // of fix, by its covariance
   std::vector<vpLampObservation> observations; // every lamp-like region, accepted where it counts for the fix
 };
@@ -57,8 +57,8 @@ public:
   bool tracking = true;
   bool compensateShutter = true; // off: all lamps as if seen at the frame's time stamp
   Solver solver = Solver::all;   // of single frames, and of the first pose
-  vpLampTracker tracker; // its detector: of single frames, too
-  vpManyLampSolver manyLamps; // its attitude: mount or free
+  vpLampTracker tracker;         // its detector: of single frames, too
+  vpManyLampSolver manyLamps;    // its attitude: mount or free
   vpTwoLampSolver twoLamps;
   vpLampMatcher matcher; // under the mount's attitude, with a map tolerance of its own; free: does not run
   vpVlpFilter filter;    // its odometry: addOdometry() before process()
@@ -112,7 +112,7 @@ private:
   vpVlpRig m_rig;
   vpLampMap m_map;
   std::unordered_map<std::string, size_t> m_lampOf; // index into the map, by id
-  double m_lineTime = 0; // s, from line to line
+  double m_lineTime = 0;                            // s, from line to line
   std::optional<LastPose> m_lastPose;
   std::optional<double> m_lastFrame; // s
   std::unique_ptr<vpLampTrust> m_trust;

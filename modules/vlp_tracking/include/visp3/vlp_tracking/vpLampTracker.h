@@ -16,15 +16,15 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Follows all lamps at once. Each has a target tracker (improved Camshift-Kalman, or another), which hands over
-  the window in which outline, stripes and LED-ID are looked for; what the stripes of its frames say together
-  tells which lamp it is.
+  Follows all lamps at once. Each has a target tracker (improved Camshift-Kalman, or another), which hands
+  over the window in which outline, stripes and LED-ID are looked for; what the stripes of its frames say
+  together tells which lamp it is.
 
   New lamps are born of a search that covers a strip of each frame, so that its cost is bounded; of the whole
-  frame only where fewer lamps than `needed` are in sight. One that is not seen for `patience` dies, and so does
-  one that left the picture. Stripes that contradict what a lamp has shown before are another lamp's: it begins
-  anew, with a new number and without an id, until its own stripes give it one. So ids are never handed from
-  lamp to lamp where two cross or one is replaced.
+  frame only where fewer lamps than `needed` are in sight. One that is not seen for `patience` dies, and so
+  does one that left the picture. Stripes that contradict what a lamp has shown before are another lamp's: it
+  begins anew, with a new number and without an id, until its own stripes give it one. So ids are never handed
+  from lamp to lamp where two cross or one is replaced.
 
   Steady regions (windows, lamps without stripes) are seen where the search comes by, and not followed.
 
@@ -50,13 +50,14 @@ public:
   vpLampTracker(vpLampTracker &&) noexcept;
 
   /*!
-    Every lamp-like region that was looked at, the one with the largest lit area first. Their features are those
-    of all frames of the lamp together, `track` its number.
-    \param expected Where else lamps are to be looked for, px: what is known of the robot's motion says so.
-    \throw vpException (dimensionError) where the picture has not the size that the rig states; (badValue) where
-    its time is not later than that of the one before.
+    Every lamp-like region that was looked at, the one with the largest lit area first. Their features are
+    those of all frames of the lamp together, `track` its number. \param expected Where else lamps are to be
+    looked for, px: what is known of the robot's motion says so. \throw vpException (dimensionError) where the
+    picture has not the size that the rig states; (badValue) where its time is not later than that of the one
+    before.
   */
-  const std::vector<vpLampObservation> &track(const vpVlpFrame &frame, const std::vector<vpRect> &expected = {});
+  const std::vector<vpLampObservation> &track(const vpVlpFrame &frame,
+                                              const std::vector<vpRect> &expected = {});
 
   //! Forgets all lamps.
   void reset();

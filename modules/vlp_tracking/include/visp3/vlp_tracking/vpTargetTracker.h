@@ -88,7 +88,10 @@ protected:
   // A method that knows no colours sees the grey values of a colour picture.
   virtual Sighting begin(const vpImage<unsigned char> &I, const vpRect &window) = 0;
   virtual Sighting begin(const vpImage<vpRGBa> &I, const vpRect &window);
-  virtual Sighting setRight(const vpImage<unsigned char> &I, const vpRect &window) { return begin(I, window); }
+  virtual Sighting setRight(const vpImage<unsigned char> &I, const vpRect &window)
+  {
+    return begin(I, window);
+  }
   virtual Sighting follow(const vpImage<unsigned char> &I) = 0;
   virtual Sighting follow(const vpImage<vpRGBa> &I);
 
