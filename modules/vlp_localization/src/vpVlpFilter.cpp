@@ -91,6 +91,9 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   sigma(turnBias) = odometryTurnBias;
   sigma.segment<3>(mount) = m_rig.translationSigma;
   sigma(mount + 3) = m_rig.rotationSigma.z();
+  if (m_tiltDoubt > 0 || m_rig.rotationSigma.norm() > 0 || m_rig.translationSigma.norm() > 0) {
+    sigma.segment<3>(lens) << principalPoint, principalPoint, focalLength;
+  }
   m_P = sigma.cwiseAbs2().asDiagonal();
   static const double steady =
       0.1; // its first two frames tell whether camera and map are as good as they say
@@ -319,13 +322,15 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
   }
   const Eigen::Vector3d camera = pose.wtb + pose.wRb * frame.btc;
   predicted.depth = (pose.wRb * frame.bRc).col(2).dot(place - camera);
-  predicted.ray = ray.ray;
+  predicted.ray = (1 + m_x(lens + 2)) * ray.ray + m_x.segment<2>(lens);
   predicted.H = Matrix::Zero(2, m_x.size());
   const Eigen::Matrix<double, 2, 3> byPlace = ray.derivative.leftCols<3>(),
                                     byTurn = ray.derivative.rightCols<3>();
   predicted.H.block<2, 3>(0, x) = byPlace;
   predicted.H.block<2, 3>(0, yaw) = byTurn * rotationByAngles(m_x);
   predicted.H.block<2, 3>(0, mount) = byPlace * pose.wRb;
+  predicted.H.block<2, 2>(0, lens).setIdentity();
+  predicted.H.col(lens + 2) = ray.ray;
   // The camera turns about z of b and stays where it is.
   const Eigen::Vector3d axis = pose.wRb.col(2);
   predicted.H.col(mount + 3) = byTurn * axis - byPlace * axis.cross(pose.wRb * frame.btc);

@@ -77,6 +77,8 @@ public:
   double odometryTurnScale = 0.01; // of the turn rate's scale
   double odometryTurnBias = 0.002; // rad/s, of the turn rate's bias
   double sidewaysSpeed = 0.002;    // m/s, standard deviation of the speed sideways, where there is odometry
+  double principalPoint = 0.001;     // normalised units, standard deviation, of a rig that states any for its mount
+  double focalLength = 0.003;        // share, likewise
   double claimedTilt =
       0.004; // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
   double claimedPlace = 0.002; // m, likewise to each coordinate of each lamp
@@ -176,7 +178,8 @@ private:
     turnScale,
     turnBias,
     mount,             // translation in b, m; heading about z of b
-    mark0 = mount + 4, // x to pitch, at the mark
+    lens = mount + 4,   // principal point, in normalised coordinates; focal length, as a share
+    mark0 = lens + 3, // x to pitch, at the mark
     lamps = mark0 + 6
   };
   using Vector = Eigen::VectorXd;
