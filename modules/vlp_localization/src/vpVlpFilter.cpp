@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -141,10 +142,12 @@ bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
 
 void vpVlpFilter::addOdometry(const vpOdometry &sample)
 {
-  for (double value : {sample.timestamp, sample.v, sample.w}) {
+  const std::pair<const char *, double> fields[] = {
+      {"timestamp", sample.timestamp}, {"v", sample.v}, {"w", sample.w}};
+  for (const auto &[name, value] : fields) {
     if (!std::isfinite(value)) {
-      throw vpException(vpException::badValue,
-                        "odometry: " + vpNumberText(value) + ", expected finite numbers");
+      throw vpException(vpException::badValue, std::string("odometry: ") + name + ": " + vpNumberText(value) +
+                                                   ", expected a finite number");
     }
   }
   if (m_odometry.empty() || sample.timestamp > m_odometry.back().timestamp) {
@@ -234,33 +237,45 @@ void vpVlpFilter::advance(double time)
   while (time > m_time && m_odometry.size() > 1) {
     const vpOdometry &begin = m_odometry[0], &end = m_odometry[1];
     static const double gap = 0.5; // s: of a longer interval the mean says little
-    if (begin.timestamp > m_time || end.timestamp - begin.timestamp > gap) {
-      break;
-    }
-    if (m_followed != end.timestamp) {
-      followOdometry(end, end.timestamp - begin.timestamp);
-      m_followed = end.timestamp;
+    if (begin.timestamp > m_time) {
+      wander(std::min(time, begin.timestamp));
+      continue;
     }
     const double until = std::min(time, end.timestamp);
-    move(until - m_time, false);
-    m_time = until;
-    if (m_time < end.timestamp) {
-      return;
+    if (end.timestamp - begin.timestamp > gap) {
+      wander(until);
+    } else {
+      if (m_followed != end.timestamp) {
+        followOdometry(end, end.timestamp - begin.timestamp);
+        m_followed = end.timestamp;
+      }
+      move(until - m_time, false);
+      m_time = until;
     }
-    m_odometry.pop_front();
-  }
-  if (time != m_time) {
-    static const double longest = 0.1; // s, of a step
-    const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(time - m_time) / longest)));
-    for (int k = 0; k < std::min(steps, 1000); ++k) {
-      move((time - m_time) / steps, true);
+    if (m_time == end.timestamp) {
+      m_odometry.pop_front();
     }
-    m_time = time;
   }
+  wander(time);
+}
+
+//! To a time by random accelerations.
+void vpVlpFilter::wander(double time)
+{
+  static const double longest = 0.1; // s, of a step
+  const double way = time - m_time;
+  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(1e6, std::abs(way)) / longest)), 1, 1000);
+  for (int k = 0; k < steps && way != 0; ++k) {
+    move(way / steps, true);
+  }
+  m_time = time;
 }
 
 void vpVlpFilter::mark(double time)
 {
+  if (!m_started) {
+    return;
+  }
   advance(time);
   const Eigen::Index n = m_x.size();
   Matrix copy = Matrix::Identity(n, n);
@@ -323,6 +338,9 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
 vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
 {
   Innovation innovation;
+  if (!m_started) {
+    return innovation;
+  }
   const Predicted predicted = predict(lamp);
   innovation.inFront = predicted.inFront;
   if (predicted.inFront) {
@@ -336,6 +354,9 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
 
 void vpVlpFilter::update(const vpLampSight &lamp)
 {
+  if (!m_started) {
+    return;
+  }
   if (placeSigma(lamp) > 0 && lampIndex(lamp) < 0) {
     addLamp(lamp);
   }
@@ -395,7 +416,7 @@ vpVlpFilter::State vpVlpFilter::state(const vpVlpFix &fix) const
   }
   const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
                turn = std::sqrt(fix.covariance(5, 5));
-  if (!(place < lostSigma && turn < lostYaw)) {
+  if (!(fix.covariance.allFinite() && place < lostSigma && turn < lostYaw)) {
     return State::lost;
   }
   return place < trackingSigma && turn < trackingYaw ? State::tracking : State::coasting;

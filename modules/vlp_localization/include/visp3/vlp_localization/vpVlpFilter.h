@@ -86,7 +86,7 @@ public:
   */
   void start(const vpHomogeneousMatrix &wMb, double time);
   void stop() { m_started = false; }
-  bool started() const { return m_started; }
+  bool started() const { return m_started; } // else time, lamps and marks change nothing
 
   /*!
     To be given before advance() passes the interval that it closes; a sample that is not later than the one
@@ -183,6 +183,7 @@ private:
   vpVlpFix fixOf(Index first) const;
   void measure(const Matrix &H, const Vector &innovation, const Matrix &R);
   void move(double dt, bool accelerates);
+  void wander(double time);
   void followOdometry(const vpOdometry &sample, double dt);
 
   vpVlpRig m_rig;
