@@ -173,10 +173,11 @@ TEST(LampTracker, LampThatIsBackInTimeKeepsItsNumber)
 {
   const Scene scene;
   for (const double patience : {1.0, 0.2}) {
+    SCOPED_TRACE(patience);
     vpLampTracker tracker = scene.tracker();
     tracker.patience = patience;
     unsigned int first = 0, again = 0;
-    for (int k = 0; k < 24; ++k) {
+    for (int k = 0; k < 26; ++k) {
       std::vector<Lamp> lamps = moved(three, 1.5 * k, 0);
       const Lamp hidden = lamps[0];
       if (k >= 6 && k < 18) { // for 0.4 s
@@ -184,14 +185,17 @@ TEST(LampTracker, LampThatIsBackInTimeKeepsItsNumber)
       }
       const std::vector<vpLampObservation> all = tracker.track(scene.frame(k, lamps));
       const vpLampObservation *seen = scene.seen(all, hidden);
-      EXPECT_EQ(seen != nullptr, lamps.size() == 3) << "frame " << k;
+      if (patience > 0.4 || k < 18) { // else the search finds it, in a frame of the next five
+        EXPECT_EQ(seen != nullptr, lamps.size() == 3) << "frame " << k;
+      }
       if (seen != nullptr) {
         (k < 6 ? first : again) = seen->track;
-        EXPECT_EQ(seen->id, "L2000");
+        EXPECT_EQ(seen->id, "L2000") << "frame " << k;
       }
     }
     EXPECT_GT(first, 0u);
-    EXPECT_EQ(again == first, patience > 0.4) << patience;
+    EXPECT_GT(again, 0u);
+    EXPECT_EQ(again == first, patience > 0.4);
     EXPECT_EQ(tracker.tracks(), 3u);
   }
 }

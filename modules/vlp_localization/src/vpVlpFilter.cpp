@@ -150,6 +150,11 @@ void vpVlpFilter::addOdometry(const vpOdometry &sample)
                                                    ", expected a finite number");
     }
   }
+  static const double setBack = 1; // s
+  if (!m_odometry.empty() && sample.timestamp < m_odometry.back().timestamp - setBack) {
+    m_odometry.clear();
+    m_followed = -1e300;
+  }
   if (m_odometry.empty() || sample.timestamp > m_odometry.back().timestamp) {
     m_odometry.push_back(sample);
   }

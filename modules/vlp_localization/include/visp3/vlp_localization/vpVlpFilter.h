@@ -90,7 +90,8 @@ public:
 
   /*!
     To be given before advance() passes the interval that it closes; a sample that is not later than the one
-    before is left out. \throw vpException (badValue) where a value is not finite.
+    before is left out. Where it is earlier by more than a second the clock was set back: it opens a first
+    interval. \throw vpException (badValue) where a value is not finite.
   */
   void addOdometry(const vpOdometry &sample);
 
