@@ -16,17 +16,20 @@ using State = vpVlpFilter::State;
 
 namespace
 {
-//! Rows and columns of x, y, z and yaw.
-Eigen::Matrix4d upright(const lampScene::Matrix6d &covariance)
+//! Of x, y, z and yaw, as if the robot stood at the origin of w and \e fix were turned about that: errors of
+//! poses that differ are then about the same point.
+Eigen::Matrix4d aboutOrigin(const vpVlpFix &fix)
 {
   const std::array<int, 4> rows = {0, 1, 2, 5};
-  Eigen::Matrix4d block;
+  Eigen::Matrix4d block, shift = Eigen::Matrix4d::Identity();
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 4; ++k) {
-      block(i, k) = covariance(rows[static_cast<size_t>(i)], rows[static_cast<size_t>(k)]);
+      block(i, k) = fix.covariance(rows[static_cast<size_t>(i)], rows[static_cast<size_t>(k)]);
     }
   }
-  return block;
+  shift(0, 3) = fix.wMb[1][3];
+  shift(1, 3) = -fix.wMb[0][3];
+  return shift * block * shift.transpose();
 }
 
 double placeSigma(const vpVlpFix &fix)
@@ -108,15 +111,14 @@ TEST(VlpFilter, OneLampCorrectsInTwoDirectionsAndNotAlongTheCircleAboutIt)
   EXPECT_LT(placeSigma(after), placeSigma(before));
   EXPECT_LT(distance(after.wMb, drive.truth(0.5)), 3 * placeSigma(after));
 
-  const Eigen::Matrix4d gain = upright(after.covariance).inverse() - upright(before.covariance).inverse();
+  const Eigen::Matrix4d gain = aboutOrigin(after).inverse() - aboutOrigin(before).inverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(0.5 * (gain + gain.transpose()));
   const Eigen::Vector4d eigen = solver.eigenvalues();
   const double best = eigen(3);
   EXPECT_GT(eigen(2), 1e-3 * best);
   EXPECT_LT(std::abs(eigen(1)), 1e-6 * best);
   EXPECT_LT(std::abs(eigen(0)), 1e-6 * best);
-  const Eigen::Vector4d circle(lamp.position.y() - before.wMb[1][3], before.wMb[0][3] - lamp.position.x(), 0,
-                               1);
+  const Eigen::Vector4d circle(lamp.position.y(), -lamp.position.x(), 0, 1);
   EXPECT_LT(std::abs(circle.dot(gain * circle)), 1e-6 * best);
 }
 

@@ -127,6 +127,48 @@ TEST(VlpFilterConsistency, RandomAccelerationsUnderClaimsThatHold)
   expectConsistent(drives(200, 1, claimed), 6);
 }
 
+// A filter that linearises about each pose anew would learn the heading from its own corrections.
+TEST(VlpFilterConsistency, OneLampAloneForLongTellsNothingThatItDoesNotShow)
+{
+  for (const bool calming : {false, true}) {
+    lampScene::ChiSquareMean mean;
+    for (unsigned int seed = 1; seed <= 40; ++seed) {
+      const Arc arc{-0.1, 0.05, 0.2, 0.1, 0, 0.15};
+      Doubt sharp;
+      sharp.raySigma = 1e-4;
+      const auto path = [&arc](double t) { return arc.at(t); };
+      Drive drive(seed, path, sharp);
+      vpVlpFilter filter(drive.rig());
+      drive.start(filter);
+      int k = 0;
+      for (; k < 15; ++k) {
+        drive.frame(filter, k * frameTime);
+      }
+      filter.rouse();
+      double before = 0;
+      for (; k < 60; ++k) {
+        const double t = k * frameTime;
+        filter.mark(t);
+        filter.update(drive.sight(0, t));
+        const double heading = std::sqrt(filter.now().covariance(5, 5));
+        if (calming) {
+          filter.settle(0, 2);
+        } else { // nothing says that it goes on as before
+          EXPECT_GT(heading, 0.97 * before) << k << ", seed " << seed;
+        }
+        before = heading;
+      }
+      vpVlpFix fix = filter.now();
+      fix.covariance.row(2).setZero();
+      fix.covariance.col(2).setZero();
+      mean.add(lampScene::nees(fix, arc.at(filter.time())));
+    }
+    // One-sided: the drive is calmer than the accelerations reckoned with. 99 of 100 means lie below.
+    EXPECT_LT(mean.mean(), 3 + 2.326 / 1.96 * mean.halfWidth(3)) << calming;
+    testing::Test::RecordProperty(calming ? "calming" : "roused", std::to_string(mean.mean()));
+  }
+}
+
 // Errors of map and mount are the same in every frame. Counted as new ones in each, they would average out.
 TEST(VlpFilterConsistency, StandingStillDoesNotAverageClaimsAway)
 {

@@ -176,7 +176,7 @@ void vpVlpFilter::move(double dt, bool accelerates)
 
   const Eigen::Index n = m_x.size();
   Matrix F = Matrix::Identity(n, n);
-  F.block<2, 1>(x, yaw) = dt * left;
+  F.block<2, 1>(x, yaw) = chord * dt * left;
   F.block<2, 2>(x, vx) = dt * R.toRotationMatrix();
   F.block<2, 1>(x, w) = 0.5 * dt * dt * left;
   F(yaw, w) = dt;
@@ -375,10 +375,21 @@ void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matri
 {
   const Matrix PH = m_P * H.transpose();
   const Matrix K = (H * PH + R).ldlt().solve(PH.transpose()).transpose();
-  m_x += K * innovation;
+  const Vector correction = K * innovation;
+  m_x += correction;
   m_x(yaw) = std::remainder(m_x(yaw), 2 * M_PI);
   const Matrix rest = Matrix::Identity(m_x.size(), m_x.size()) - K * H;
   m_P = rest * m_P * rest.transpose() + K * R * K.transpose();
+  // What no lamp tells, turns about a lamp or any other place, is to be the same after the place was corrected as
+  // before it, else corrections alone would make it known: the covariance is that of the right-invariant error
+  // (Barrau and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.
+  for (const int first : {x, mark0}) {
+    const Eigen::Vector2d turned(-correction(first + 1), correction(first));
+    const Eigen::RowVectorXd row = m_P.row(first + yaw);
+    m_P.middleRows<2>(first) += turned * row;
+    const Vector column = m_P.col(first + yaw);
+    m_P.middleCols<2>(first) += column * turned.transpose();
+  }
   m_P = 0.5 * (m_P + m_P.transpose()).eval();
 }
 
