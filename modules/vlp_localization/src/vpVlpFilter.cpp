@@ -380,9 +380,9 @@ void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matri
   m_x(yaw) = std::remainder(m_x(yaw), 2 * M_PI);
   const Matrix rest = Matrix::Identity(m_x.size(), m_x.size()) - K * H;
   m_P = rest * m_P * rest.transpose() + K * R * K.transpose();
-  // What no lamp tells, turns about a lamp or any other place, is to be the same after the place was corrected as
-  // before it, else corrections alone would make it known: the covariance is that of the right-invariant error
-  // (Barrau and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.
+  // A turn about the lamp, which its ray does not tell, is to stay untold once the place was corrected, else
+  // corrections alone would tell the heading. So the covariance is that of the right-invariant error (Barrau
+  // and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.
   for (const int first : {x, mark0}) {
     const Eigen::Vector2d turned(-correction(first + 1), correction(first));
     const Eigen::RowVectorXd row = m_P.row(first + yaw);
