@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -160,11 +161,18 @@ bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
 
 void vpVlpFilter::addOdometry(const vpOdometry &sample)
 {
-  for (double value : {sample.timestamp, sample.v, sample.w}) {
+  const std::pair<const char *, double> fields[] = {
+      {"timestamp", sample.timestamp}, {"v", sample.v}, {"w", sample.w}};
+  for (const auto &[name, value] : fields) {
     if (!std::isfinite(value)) {
-      throw vpException(vpException::badValue,
-                        "odometry: " + vpNumberText(value) + ", expected finite numbers");
+      throw vpException(vpException::badValue, std::string("odometry: ") + name + ": " + vpNumberText(value) +
+                                                   ", expected a finite number");
     }
+  }
+  static const double setBack = 1; // s
+  if (!m_odometry.empty() && sample.timestamp < m_odometry.back().timestamp - setBack) {
+    m_odometry.clear();
+    m_followed = -1e300;
   }
   if (m_odometry.empty() || sample.timestamp > m_odometry.back().timestamp) {
     m_odometry.push_back(sample);
@@ -187,7 +195,7 @@ void vpVlpFilter::move(double dt, bool accelerates)
 
   const Eigen::Index n = m_x.size();
   Matrix F = Matrix::Identity(n, n);
-  F.block<2, 1>(x, yaw) = dt * left;
+  F.block<2, 1>(x, yaw) = chord * dt * left;
   F.block<2, 2>(x, vx) = dt * R.toRotationMatrix();
   F.block<2, 1>(x, w) = 0.5 * dt * dt * left;
   F(yaw, w) = dt;
@@ -253,33 +261,45 @@ void vpVlpFilter::advance(double time)
   while (time > m_time && m_odometry.size() > 1) {
     const vpOdometry &begin = m_odometry[0], &end = m_odometry[1];
     static const double gap = 0.5; // s: of a longer interval the mean says little
-    if (begin.timestamp > m_time || end.timestamp - begin.timestamp > gap) {
-      break;
-    }
-    if (m_followed != end.timestamp) {
-      followOdometry(end, end.timestamp - begin.timestamp);
-      m_followed = end.timestamp;
+    if (begin.timestamp > m_time) {
+      wander(std::min(time, begin.timestamp));
+      continue;
     }
     const double until = std::min(time, end.timestamp);
-    move(until - m_time, false);
-    m_time = until;
-    if (m_time < end.timestamp) {
-      return;
+    if (end.timestamp - begin.timestamp > gap) {
+      wander(until);
+    } else {
+      if (m_followed != end.timestamp) {
+        followOdometry(end, end.timestamp - begin.timestamp);
+        m_followed = end.timestamp;
+      }
+      move(until - m_time, false);
+      m_time = until;
     }
-    m_odometry.pop_front();
-  }
-  if (time != m_time) {
-    static const double longest = 0.1; // s, of a step
-    const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(time - m_time) / longest)));
-    for (int k = 0; k < std::min(steps, 1000); ++k) {
-      move((time - m_time) / steps, true);
+    if (m_time == end.timestamp) {
+      m_odometry.pop_front();
     }
-    m_time = time;
   }
+  wander(time);
+}
+
+//! To a time by random accelerations.
+void vpVlpFilter::wander(double time)
+{
+  static const double longest = 0.1; // s, of a step
+  const double way = time - m_time;
+  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(1e6, std::abs(way)) / longest)), 1, 1000);
+  for (int k = 0; k < steps && way != 0; ++k) {
+    move(way / steps, true);
+  }
+  m_time = time;
 }
 
 void vpVlpFilter::mark(double time)
 {
+  if (!m_started) {
+    return;
+  }
   advance(time);
   m_markTime = m_time;
   const Eigen::Index n = m_x.size();
@@ -345,6 +365,9 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
 vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
 {
   Innovation innovation;
+  if (!m_started) {
+    return innovation;
+  }
   const Predicted predicted = predict(lamp);
   innovation.inFront = predicted.inFront;
   if (predicted.inFront) {
@@ -358,6 +381,9 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
 
 void vpVlpFilter::update(const vpLampSight &lamp)
 {
+  if (!m_started) {
+    return;
+  }
   if (placeSigma(lamp) > 0 && lampIndex(lamp) < 0) {
     addLamp(lamp);
   }
@@ -389,10 +415,21 @@ void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matri
 {
   const Matrix PH = m_P * H.transpose();
   const Matrix K = (H * PH + R).ldlt().solve(PH.transpose()).transpose();
-  m_x += K * innovation;
+  const Vector correction = K * innovation;
+  m_x += correction;
   m_x(yaw) = std::remainder(m_x(yaw), 2 * M_PI);
   const Matrix rest = Matrix::Identity(m_x.size(), m_x.size()) - K * H;
   m_P = rest * m_P * rest.transpose() + K * R * K.transpose();
+  // A turn about the lamp, which its ray does not tell, is to stay untold once the place was corrected, else
+  // corrections alone would tell the heading. So the covariance is that of the right-invariant error (Barrau
+  // and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.
+  for (const int first : {x, mark0}) {
+    const Eigen::Vector2d turned(-correction(first + 1), correction(first));
+    const Eigen::RowVectorXd row = m_P.row(first + yaw);
+    m_P.middleRows<2>(first) += turned * row;
+    const Vector column = m_P.col(first + yaw);
+    m_P.middleCols<2>(first) += column * turned.transpose();
+  }
   m_P = 0.5 * (m_P + m_P.transpose()).eval();
 }
 
@@ -435,7 +472,7 @@ vpVlpFilter::State vpVlpFilter::state(const vpVlpFix &fix) const
   }
   const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
                turn = std::sqrt(fix.covariance(5, 5));
-  if (!(place < lostSigma && turn < lostYaw)) {
+  if (!(fix.covariance.allFinite() && place < lostSigma && turn < lostYaw)) {
     return State::lost;
   }
   return place < trackingSigma && turn < trackingYaw ? State::tracking : State::coasting;

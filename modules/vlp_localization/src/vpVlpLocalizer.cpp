@@ -85,6 +85,9 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
 bool vpVlpLocalizer::inOrder(double time)
 {
   static const double setBack = 1; // s
+  if (!std::isfinite(time)) {
+    return false;
+  }
   if (m_lastFrame && time <= *m_lastFrame && time > *m_lastFrame - setBack) {
     return false;
   }

@@ -64,6 +64,8 @@ struct vpLampTracker::Track {
   vpRect window;       // px, where it is expected in the frame at hand
   double seenLast = 0; // s
   bool taken = false;  // by an observation of the frame at hand
+  vpRect place;        // px, where it was seen last
+  bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
 };
 
 vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detector(rig, map), m_rig(rig) {}
@@ -85,10 +87,10 @@ void vpLampTracker::reset()
 const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &frame,
                                                            const std::vector<vpRect> &expected)
 {
-  if (m_any && !(frame.timestamp > m_time)) {
-    throw vpException(vpException::badValue, "frame: time " + vpNumberText(frame.timestamp) +
-                                                 " s, expected one after that of the frame before, " +
-                                                 vpNumberText(m_time) + " s");
+  if (!std::isfinite(frame.timestamp) || (m_any && !(frame.timestamp > m_time))) {
+    throw vpException(vpException::badValue,
+                      "frame: time " + vpNumberText(frame.timestamp) + " s, expected a finite one" +
+                          (m_any ? " after that of the frame before, " + vpNumberText(m_time) + " s" : ""));
   }
   detector.check(frame.I);
   // Windows from the target trackers, a strip in search of new lamps, or all of the picture.
@@ -124,9 +126,13 @@ std::vector<vpRect> vpLampTracker::windows(const vpVlpFrame &frame, const std::v
 {
   std::vector<vpRect> all;
   for (Track &track : m_tracks) {
-    track.target->track(frame.I);
     track.taken = false;
-    track.window = track.target->window();
+    if (track.astray) {
+      track.window = track.place;
+    } else {
+      track.target->track(frame.I);
+      track.window = track.target->window();
+    }
     all.push_back(widened(track.window, margin));
   }
   all.insert(all.end(), expected.begin(), expected.end());
@@ -158,7 +164,8 @@ void vpLampTracker::assign()
     }
     const vpRect box = boxOf(seen.outline);
     for (size_t t = 0; t < m_tracks.size(); ++t) {
-      const vpImagePoint centre = m_tracks[t].target->center();
+      const vpImagePoint centre =
+          m_tracks[t].astray ? m_tracks[t].place.getCenter() : m_tracks[t].target->center();
       const double size = std::hypot(m_tracks[t].window.getWidth(), m_tracks[t].window.getHeight());
       const double apart =
           std::hypot(seen.outline.centre.x() - centre.get_u(), seen.outline.centre.y() - centre.get_v()) /
@@ -175,6 +182,14 @@ void vpLampTracker::assign()
       m_trackOf[i] = static_cast<int>(t);
       m_tracks[t].taken = true;
     }
+  }
+  for (Track &track : m_tracks) {
+    const bool another =
+        std::any_of(m_observations.begin(), m_observations.end(), [&track](const vpLampObservation &seen) {
+          static const double same = 0.5;
+          return overlap(boxOf(seen.outline), track.window) > same;
+        });
+    track.astray = track.astray || (!track.taken && another);
   }
 }
 
@@ -193,9 +208,31 @@ void vpLampTracker::follow(Track &track, vpLampObservation &seen, const vpVlpFra
   seen.track = track.number;
   static const double alike = 0.7;
   const vpRect box = inside(boxOf(seen.outline), frame.I);
-  if (overlap(box, track.target->window()) < alike && box.getWidth() >= 4 && box.getHeight() >= 4) {
+  track.place = box;
+  if (box.getWidth() < 4 || box.getHeight() < 4) {
+    return;
+  }
+  if (track.astray) { // on a way of another lamp
+    if (std::unique_ptr<vpTargetTracker> target = targetAt(frame.I, box)) {
+      track.target = std::move(target);
+      track.astray = false;
+    }
+  } else if (overlap(box, track.target->window()) < alike) {
     track.target->correct(frame.I, box);
   }
+}
+
+//! None where the box shows nothing that the method can follow.
+std::unique_ptr<vpTargetTracker> vpLampTracker::targetAt(const vpImage<unsigned char> &I,
+                                                         const vpRect &box) const
+{
+  std::unique_ptr<vpTargetTracker> target = vpTargetTracker::make(method);
+  try {
+    target->initTracking(I, box);
+  } catch (const vpException &) {
+    return nullptr;
+  }
+  return target;
 }
 
 void vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
@@ -205,16 +242,14 @@ void vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
     return;
   }
   Track track;
-  track.target = vpTargetTracker::make(method);
-  try {
-    track.target->initTracking(frame.I, box);
-  } catch (const vpException &) {
-    return; // nothing in it that this method can follow
+  track.target = targetAt(frame.I, box);
+  if (!track.target) {
+    return;
   }
   track.number = ++m_born;
   track.evidence.add(seen.features);
   track.seenLast = frame.timestamp;
-  track.window = box;
+  track.window = track.place = box;
   track.taken = true;
   seen.track = track.number;
   m_tracks.push_back(std::move(track));
@@ -225,7 +260,7 @@ void vpLampTracker::bury(double time)
 {
   m_tracks.erase(std::remove_if(m_tracks.begin(), m_tracks.end(),
                                 [&](const Track &track) {
-                                  const vpRect window = track.target->window();
+                                  const vpRect window = track.astray ? track.place : track.target->window();
                                   const bool gone = !(window.getWidth() > 0 && window.getHeight() > 0);
                                   return time - track.seenLast > patience || (gone && !track.taken);
                                 }),

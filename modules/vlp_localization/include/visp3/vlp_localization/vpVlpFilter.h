@@ -77,8 +77,9 @@ public:
   double odometryTurnScale = 0.01; // of the turn rate's scale
   double odometryTurnBias = 0.002; // rad/s, of the turn rate's bias
   double sidewaysSpeed = 0.002;    // m/s, standard deviation of the speed sideways, where there is odometry
-  double principalPoint = 0.001;     // normalised units, standard deviation, of a rig that states any for its mount
-  double focalLength = 0.003;        // share, likewise
+  double principalPoint =
+      0.001;                  // normalised units, standard deviation, of a rig that states any for its mount
+  double focalLength = 0.003; // share, likewise
   double claimedTilt =
       0.004; // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
   double claimedPlace = 0.002; // m, likewise to each coordinate of each lamp
@@ -95,11 +96,12 @@ public:
   //! velocity. The lamps are to follow again.
   void startAgain();
   void stop() { m_started = false; }
-  bool started() const { return m_started; }
+  bool started() const { return m_started; } // else time, lamps and marks change nothing
 
   /*!
     To be given before advance() passes the interval that it closes; a sample that is not later than the one
-    before is left out. \throw vpException (badValue) where a value is not finite.
+    before is left out. Where it is earlier by more than a second the clock was set back: it opens a first
+    interval. \throw vpException (badValue) where a value is not finite.
   */
   void addOdometry(const vpOdometry &sample);
 
@@ -177,8 +179,8 @@ private:
     speedScale,
     turnScale,
     turnBias,
-    mount,             // translation in b, m; heading about z of b
-    lens = mount + 4,   // principal point, in normalised coordinates; focal length, as a share
+    mount,            // translation in b, m; heading about z of b
+    lens = mount + 4, // principal point, in normalised coordinates; focal length, as a share
     mark0 = lens + 3, // x to pitch, at the mark
     lamps = mark0 + 6
   };
@@ -194,6 +196,7 @@ private:
   vpVlpFix fixOf(Index first) const;
   void measure(const Matrix &H, const Vector &innovation, const Matrix &R);
   void move(double dt, bool accelerates);
+  void wander(double time);
   void followOdometry(const vpOdometry &sample, double dt);
 
   vpVlpRig m_rig;

@@ -53,8 +53,8 @@ public:
     Every lamp-like region that was looked at, the one with the largest lit area first. Their features are
     those of all frames of the lamp together, `track` its number. \param expected Where else lamps are to be
     looked for, px: what is known of the robot's motion says so. \throw vpException (dimensionError) where the
-    picture has not the size that the rig states; (badValue) where its time is not later than that of the one
-    before.
+    picture has not the size that the rig states; (badValue) where its time is not finite, or not later than
+    that of the one before.
   */
   const std::vector<vpLampObservation> &track(const vpVlpFrame &frame,
                                               const std::vector<vpRect> &expected = {});
@@ -72,6 +72,7 @@ private:
   vpRect strip();
   void assign();
   void follow(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
+  std::unique_ptr<vpTargetTracker> targetAt(const vpImage<unsigned char> &I, const vpRect &box) const;
   void bear(vpLampObservation &seen, const vpVlpFrame &frame);
   void bury(double time);
 

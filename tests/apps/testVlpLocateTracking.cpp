@@ -1,0 +1,243 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// vlp-locate on sequences: the pose carried from frame to frame, odometry, times that repeat.
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_core/vpCsvTable.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+#include "apps/vpLocateScene.h"
+#include "common/vpProcess.h"
+
+namespace
+{
+using vpLocateScene::encoded;
+using vpLocateScene::with;
+
+constexpr int badInput = 2;
+
+const std::vector<std::string> fixColumns = {"timestamp_s", "x",      "y",       "z",       "roll",
+                                             "pitch",       "yaw",    "sigma_x", "sigma_y", "sigma_z",
+                                             "sigma_yaw",   "cov_xy", "lamps",   "state",   "compute_s"};
+
+//! Runs vlp-locate and expects that it refuses in one line with all of \e parts, and writes nothing.
+void expectRefused(const std::vector<std::string> &arguments, const std::vector<std::string> &parts)
+{
+  SCOPED_TRACE(testing::PrintToString(arguments));
+  vpProcess locate("vlp-locate", arguments);
+  EXPECT_EQ(locate.wait(), badInput);
+  const std::string line = locate.err();
+  EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
+  EXPECT_EQ(line.rfind("vlp-locate: error: ", 0), 0u) << line;
+  for (const std::string &part : parts) {
+    EXPECT_NE(line.find(part), std::string::npos) << "  line:     " << line << "  expected: " << part;
+  }
+  EXPECT_EQ(locate.out(), "");
+}
+
+//! A folder with rig, lamps and three pictures: the scene, black, and from elsewhere.
+class Recording
+{
+public:
+  Recording()
+  {
+    vpLocateScene::writeRig(m_folder);
+    m_folder.write("lamps.png", encoded(".png", vpLocateScene::picture()));
+    m_folder.write("black.png", encoded(".png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(4))));
+    m_folder.write("there.png",
+                   encoded(".png", vpLocateScene::picture(vpLocateScene::robot(0.16, 0.02, 0.9))));
+  }
+
+  std::string path() const { return m_folder.path(); }
+  std::string operator/(const std::string &name) const { return m_folder / name; }
+  std::string read(const std::string &name) const { return m_folder.read(name); }
+  std::string write(const std::string &name, const std::string &text) const
+  {
+    return m_folder.write(name, text);
+  }
+
+  //! The list of frames: time, picture.
+  void list(const std::vector<std::pair<double, std::string>> &frames) const
+  {
+    std::string text = "timestamp_s,file\n";
+    for (const auto &[time, name] : frames) {
+      text += vpNumberText(time) + "," + name + ".png\n";
+    }
+    m_folder.write("frames.csv", text);
+  }
+
+  //! What vlp-locate says of them.
+  vpCsvTable fixes(const std::vector<std::string> &more = {}) const
+  {
+    vpProcess locate("vlp-locate", with({"--run", m_folder.path(), "--fixes", m_folder / "fixes.csv"}, more));
+    EXPECT_EQ(locate.wait(), 0) << locate.err();
+    return vpCsvTable::load(m_folder / "fixes.csv", fixColumns);
+  }
+
+private:
+  vpTemporaryFolder m_folder;
+};
+
+std::string poseIn(const vpCsvTable &table, size_t row)
+{
+  std::string text;
+  for (size_t column = 1; column < 13; ++column) {
+    text += table.text(row, column) + ",";
+  }
+  return text + table.text(row, 13);
+}
+} // namespace
+
+TEST(VlpLocateTracking, OdometryThatIsNoneIsOneClearLine)
+{
+  const Recording run;
+  run.list({{0, "lamps"}});
+  const std::string header = "timestamp_s,v_m_s,w_rad_s\n";
+  expectRefused({"--run", run.path(), "--odometry", run / "none.csv"}, {run / "none.csv"});
+  struct Case {
+    std::string text;
+    std::vector<std::string> parts;
+  };
+  for (const Case &bad :
+       {Case{"timestamp_s,v,w_rad_s\n0,0,0\n", {":1", "expected timestamp_s,v_m_s,w_rad_s"}},
+        Case{"", {"expected"}}, Case{header, {"no samples", "expected one or more"}},
+        Case{header + "0,0,0\n1,0,0\n1,0,0\n",
+             {":4", "timestamp_s", "expected a time after that of the line above"}},
+        Case{header + "1,0,0\n0.5,0,0\n",
+             {":3", "timestamp_s", "expected a time after that of the line above"}},
+        Case{header + "0,fast,0\n", {":2", "v_m_s", "fast"}},
+        Case{header + "0,0,nan\n", {":2", "w_rad_s", "nan"}}, Case{header + "0,0\n", {":2"}}}) {
+    const std::string file = run.write("odometry.csv", bad.text);
+    std::vector<std::string> parts = bad.parts;
+    parts.push_back(file);
+    expectRefused({"--run", run.path(), "--odometry", file}, parts);
+  }
+}
+
+TEST(VlpLocateTracking, OdometryWithoutASequenceIsRefused)
+{
+  const Recording run;
+  run.list({{0, "lamps"}});
+  const std::string file = run.write("odometry.csv", "timestamp_s,v_m_s,w_rad_s\n0,0,0\n");
+  const std::vector<std::string> parts = {"--odometry", file, "expected a sequence"};
+  expectRefused({"--rig", run / "rig.yaml", "--lamps", run / "lamps.yaml", "--image", run / "lamps.png",
+                 "--odometry", file},
+                parts);
+  expectRefused({"--run", run.path(), "--no-track", "--odometry", file}, parts);
+  expectRefused({"--run", run.path(), "--solver", "two", "--odometry", file}, parts);
+}
+
+TEST(VlpLocateTracking, StateGoesFromFixOverTrackingAndCoastingToNone)
+{
+  const Recording run;
+  std::vector<std::pair<double, std::string>> frames;
+  for (int k = 0; k < 10; ++k) {
+    frames.emplace_back(0.05 * k, "lamps");
+  }
+  for (int k = 10; k < 16; ++k) {
+    frames.emplace_back(0.05 * k, "black");
+  }
+  frames.emplace_back(4, "black");
+  frames.emplace_back(4.05, "lamps");
+  frames.emplace_back(4.1, "lamps");
+  run.list(frames);
+  const vpCsvTable fixes = run.fixes();
+  ASSERT_EQ(fixes.rows(), frames.size());
+  for (size_t row = 0; row < frames.size(); ++row) {
+    const std::string state = fixes.text(row, 13);
+    EXPECT_EQ(fixes.number(row, 0), frames[row].first);
+    if (row == 0 || row == 17) {
+      EXPECT_EQ(state, "fix") << row;
+    } else if (row < 10 || row == 18) {
+      EXPECT_TRUE(state == "tracking" || (row < 3 && state == "coasting")) << row << ": " << state;
+    } else if (row == 16) {
+      EXPECT_EQ(state, "none");
+      EXPECT_EQ(fixes.text(row, 1), "");
+      continue;
+    } else {
+      EXPECT_TRUE(state == "coasting" || (row < 13 && state == "tracking")) << row << ": " << state;
+    }
+    EXPECT_EQ(fixes.text(row, 12).empty(), frames[row].second == "black") << row;
+    EXPECT_NEAR(fixes.number(row, 1), 0.06, 3 * fixes.number(row, 7) + 5e-4) << row;
+    EXPECT_NEAR(fixes.number(row, 2), -0.04, 3 * fixes.number(row, 8) + 5e-4) << row;
+    EXPECT_EQ(state == "tracking", state != "fix" &&
+                                       std::max(fixes.number(row, 7), fixes.number(row, 8)) < 0.02 &&
+                                       fixes.number(row, 10) < 0.05)
+        << row;
+  }
+  EXPECT_EQ(fixes.text(15, 13), "coasting");
+}
+
+TEST(VlpLocateTracking, WithoutTrackingEachFrameIsAsIfItWereAlone)
+{
+  const Recording run;
+  const std::vector<std::pair<double, std::string>> frames = {
+      {0, "lamps"}, {0.05, "there"}, {0.1, "black"}, {0.15, "lamps"}, {0.2, "there"}};
+  run.list(frames);
+  const vpCsvTable all = run.fixes({"--no-track"});
+  ASSERT_EQ(all.rows(), frames.size());
+  for (size_t row = 0; row < frames.size(); ++row) {
+    run.list({frames[row]});
+    vpProcess locate("vlp-locate", {"--run", run.path(), "--no-track", "--fixes", run / "one.csv"});
+    EXPECT_EQ(locate.wait(), frames[row].second == "black" ? 3 : 0);
+    EXPECT_EQ(poseIn(vpCsvTable::load(run / "one.csv", fixColumns), 0), poseIn(all, row)) << row;
+    EXPECT_EQ(all.text(row, 13), frames[row].second == "black" ? "none" : "fix");
+  }
+}
+
+TEST(VlpLocateTracking, FrameWhoseTimeIsRepeatedGivesNothingAndTheRestGoesOn)
+{
+  const Recording run;
+  run.list({{10, "lamps"},
+            {10.05, "lamps"},
+            {10.05, "there"},
+            {10.1, "lamps"},
+            {10.1, "lamps"},
+            {10.15, "lamps"}});
+  const vpCsvTable fixes = run.fixes();
+  ASSERT_EQ(fixes.rows(), 6u);
+  for (size_t row = 0; row < 6; ++row) {
+    EXPECT_EQ(fixes.text(row, 13) == "none", row == 2 || row == 4) << row;
+    if (row != 2 && row != 4) {
+      EXPECT_NEAR(fixes.number(row, 1), 0.06, 2e-3) << row;
+    }
+  }
+  EXPECT_EQ(fixes.text(5, 13), "tracking");
+}
+
+TEST(VlpLocateTracking, ListWhoseTimesGoBackIsRefused)
+{
+  const Recording run;
+  run.list({{10, "lamps"}, {9.9, "lamps"}});
+  expectRefused({"--run", run.path()}, {run / "frames.csv:3", "timestamp_s", "expected a time not before"});
+}
+
+// A robot that stands in the dark: what its wheels say keeps the pose far surer than a guess of its speed.
+TEST(VlpLocateTracking, OdometryCarriesThePoseThroughTheDark)
+{
+  const Recording run;
+  std::vector<std::pair<double, std::string>> frames;
+  for (int k = 0; k < 20; ++k) {
+    frames.emplace_back(0.1 * k, k < 6 || k == 19 ? "lamps" : "black");
+  }
+  run.list(frames);
+  std::string odometry = "timestamp_s,v_m_s,w_rad_s\n";
+  for (int k = 0; k < 100; ++k) {
+    odometry += vpNumberText(0.02 * k) + ",0,0\n";
+  }
+  const std::string file = run.write("odometry.csv", odometry);
+  const vpCsvTable with = run.fixes({"--odometry", file}), without = run.fixes();
+  ASSERT_EQ(with.rows(), 20u);
+  for (size_t row = 1; row < 20; ++row) {
+    EXPECT_EQ(with.text(row, 13), "tracking") << row;
+    EXPECT_NEAR(with.number(row, 1), 0.06, 3 * with.number(row, 7) + 5e-4) << row;
+    EXPECT_NEAR(with.number(row, 6), 0.5, 3 * with.number(row, 10) + 5e-4) << row;
+  }
+  EXPECT_EQ(without.text(18, 13), "none");
+}

@@ -1,0 +1,376 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Lamps from frame to frame: numbers that stay with them, ids that are never handed on.
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_tracking/vpLampTracker.h>
+
+#include "common/vpExpectError.h"
+#include "common/vpLampPicture.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+const double frameTime = 1.0 / 30; // s
+
+//! A lamp of the scene: its id is its frequency's, as the map has it.
+struct Lamp {
+  double u, v;      // px
+  double frequency; // Hz
+};
+
+std::string idOf(double frequency)
+{
+  return "L" + std::to_string(static_cast<int>(frequency));
+}
+
+//! A small camera, its lamps, and the tracker that looks at them.
+class Scene
+{
+public:
+  int width = 400, height = 320; // px
+  bool columns = false;
+  double radius = 26; // px
+
+  explicit Scene(bool readAlongColumns = false) : columns(readAlongColumns)
+  {
+    if (columns) {
+      std::swap(width, height);
+    }
+  }
+
+  vpVlpRig rig() const
+  {
+    vpVlpRig rig;
+    rig.width = static_cast<unsigned int>(width);
+    rig.height = static_cast<unsigned int>(height);
+    rig.camera.initPersProjWithoutDistortion(500, 500, 0.5 * width, 0.5 * height);
+    rig.shutter.rowTime = rig.shutter.exposure = 40e-6;
+    rig.shutter.rowTimeSigma = 4e-9;
+    rig.shutter.readout = columns ? vpRollingShutter::Readout::columns : vpRollingShutter::Readout::rows;
+    return rig;
+  }
+
+  static vpLampMap map()
+  {
+    vpLampMap map;
+    for (const double frequency : {2000.0, 2600.0, 3500.0, 4400.0}) {
+      vpLamp lamp;
+      lamp.id = idOf(frequency);
+      lamp.modulation.kind = vpModulation::Kind::pwm;
+      lamp.modulation.frequency = frequency;
+      map.lamps.push_back(lamp);
+    }
+    return map;
+  }
+
+  vpLampTracker tracker() const { return vpLampTracker(rig(), map()); }
+
+  //! Lamps share no clock with the camera: their phase is another one in each frame.
+  vpVlpFrame frame(int k, const std::vector<Lamp> &lamps) const
+  {
+    vpLampPicture picture;
+    picture.width = width;
+    picture.height = height;
+    picture.columns = columns;
+    picture.rowTime = picture.exposure = 40e-6;
+    picture.blur = 0.7;
+    picture.seed = static_cast<unsigned int>(1 + k);
+    for (const Lamp &lamp : lamps) {
+      vpPaintedLamp painted;
+      painted.centre = columns ? Eigen::Vector2d(lamp.v, lamp.u) : Eigen::Vector2d(lamp.u, lamp.v);
+      painted.a = painted.b = radius;
+      painted.frequency = lamp.frequency;
+      painted.phase = 0.37 * k + 0.1 * lamp.frequency / 1000;
+      if (lamp.frequency > 0) {
+        painted.pwm(0.5);
+      }
+      picture.lamps.push_back(painted);
+    }
+    return {picture.render(), k * frameTime, std::to_string(k)};
+  }
+
+  //! The observation at a lamp's place, nullptr where there is none.
+  const vpLampObservation *seen(const std::vector<vpLampObservation> &all, const Lamp &lamp) const
+  {
+    const Eigen::Vector2d place = columns ? Eigen::Vector2d(lamp.v, lamp.u) : Eigen::Vector2d(lamp.u, lamp.v);
+    const auto found = std::find_if(all.begin(), all.end(), [&](const vpLampObservation &each) {
+      return (each.point - place).norm() < 3;
+    });
+    return found == all.end() ? nullptr : &*found;
+  }
+};
+
+std::vector<Lamp> moved(std::vector<Lamp> lamps, double right, double down)
+{
+  for (Lamp &lamp : lamps) {
+    lamp.u += right;
+    lamp.v += down;
+  }
+  return lamps;
+}
+
+const std::vector<Lamp> three = {{60.3, 60.6, 2000}, {180.7, 70.2, 2600}, {80.4, 200.8, 3500}};
+
+//! Each lamp keeps the number of its first frame, and its id.
+void expectNumbersStay(const Scene &scene, vpLampTracker &tracker, int frames,
+                       const std::function<std::vector<Lamp>(int)> &lamps)
+{
+  std::map<double, unsigned int> numbers;
+  std::set<unsigned int> distinct;
+  for (int k = 0; k < frames; ++k) {
+    const std::vector<vpLampObservation> all = tracker.track(scene.frame(k, lamps(k)));
+    EXPECT_EQ(all.size(), lamps(k).size()) << "frame " << k;
+    for (const Lamp &lamp : lamps(k)) {
+      const vpLampObservation *seen = scene.seen(all, lamp);
+      ASSERT_NE(seen, nullptr) << idOf(lamp.frequency) << " in frame " << k;
+      EXPECT_GT(seen->track, 0u);
+      EXPECT_EQ(numbers.emplace(lamp.frequency, seen->track).first->second, seen->track)
+          << idOf(lamp.frequency) << " in frame " << k;
+      EXPECT_EQ(seen->id, idOf(lamp.frequency)) << "frame " << k;
+      distinct.insert(seen->track);
+    }
+  }
+  EXPECT_EQ(distinct.size(), numbers.size());
+  EXPECT_EQ(tracker.tracks(), numbers.size());
+}
+} // namespace
+
+TEST(LampTracker, NumbersStayWithLampsThatMove)
+{
+  for (const bool columns : {false, true}) {
+    const Scene scene(columns);
+    for (const double pace : {0.0, 3.3, 12.0}) { // px a frame
+      SCOPED_TRACE(pace);
+      vpLampTracker tracker = scene.tracker();
+      expectNumbersStay(scene, tracker, 12, [&](int k) { return moved(three, pace * k, 0.3 * pace * k); });
+    }
+  }
+}
+
+TEST(LampTracker, NumbersStayAtAHundredPixelsAFrameFromTheSecondOn)
+{
+  Scene scene;
+  scene.width = 640;
+  vpLampTracker tracker = scene.tracker();
+  const std::vector<Lamp> two = {{60.3, 60.6, 2000}, {80.4, 240.8, 3500}};
+  expectNumbersStay(scene, tracker, 5, [&](int k) { return moved(two, 100.0 * k, 0); });
+}
+
+TEST(LampTracker, LampThatIsBackInTimeKeepsItsNumber)
+{
+  const Scene scene;
+  for (const double patience : {1.0, 0.2}) {
+    SCOPED_TRACE(patience);
+    vpLampTracker tracker = scene.tracker();
+    tracker.patience = patience;
+    unsigned int first = 0, again = 0;
+    for (int k = 0; k < 26; ++k) {
+      std::vector<Lamp> lamps = moved(three, 1.5 * k, 0);
+      const Lamp hidden = lamps[0];
+      if (k >= 6 && k < 18) { // for 0.4 s
+        lamps.erase(lamps.begin());
+      }
+      const std::vector<vpLampObservation> all = tracker.track(scene.frame(k, lamps));
+      const vpLampObservation *seen = scene.seen(all, hidden);
+      if (patience > 0.4 || k < 18) { // else the search finds it, in a frame of the next five
+        EXPECT_EQ(seen != nullptr, lamps.size() == 3) << "frame " << k;
+      }
+      if (seen != nullptr) {
+        (k < 6 ? first : again) = seen->track;
+        EXPECT_EQ(seen->id, "L2000") << "frame " << k;
+      }
+    }
+    EXPECT_GT(first, 0u);
+    EXPECT_GT(again, 0u);
+    EXPECT_EQ(again == first, patience > 0.4);
+    EXPECT_EQ(tracker.tracks(), 3u);
+  }
+}
+
+TEST(LampTracker, LampInAnothersPlaceGetsANewNumberAndNeverItsId)
+{
+  const Scene scene;
+  for (const double other : {4400.0, 5200.0}) { // of the map, and none of it
+    vpLampTracker tracker = scene.tracker();
+    unsigned int before = 0;
+    for (int k = 0; k < 14; ++k) {
+      std::vector<Lamp> lamps = three;
+      lamps[1].frequency = k < 6 ? 2600 : other;
+      const std::vector<vpLampObservation> all = tracker.track(scene.frame(k, lamps));
+      const vpLampObservation *seen = scene.seen(all, lamps[1]);
+      ASSERT_NE(seen, nullptr);
+      if (k < 6) {
+        before = seen->track;
+        EXPECT_EQ(seen->id, "L2600");
+      } else {
+        EXPECT_GT(seen->track, before) << "frame " << k;
+        EXPECT_EQ(seen->id, other < 5000 ? "L4400" : "") << "frame " << k;
+      }
+    }
+    EXPECT_EQ(tracker.tracks(), 3u);
+  }
+}
+
+TEST(LampTracker, LampsThatCrossKeepTheirIds)
+{
+  const Scene scene;
+  for (const double apart : {0.0, 30.0, 60.0}) { // px between their ways
+    vpLampTracker tracker = scene.tracker();
+    for (int k = 0; k < 30; ++k) {
+      const std::vector<Lamp> lamps = {
+          {60.3 + 9 * k, 150.2, 2000}, {340.7 - 9 * k, 150.2 + apart, 3500}, {200, 40, 2600}};
+      const std::vector<vpLampObservation> all = tracker.track(scene.frame(k, lamps));
+      const double between = std::hypot(lamps[0].u - lamps[1].u, lamps[0].v - lamps[1].v);
+      for (const Lamp &lamp : lamps) {
+        const vpLampObservation *seen = scene.seen(all, lamp);
+        if (between > 2 * scene.radius + 4 || lamp.frequency == 2600) {
+          ASSERT_NE(seen, nullptr) << "frame " << k << ", " << apart;
+          EXPECT_EQ(seen->id, idOf(lamp.frequency)) << "frame " << k << ", " << apart;
+        } else if (seen != nullptr) { // they overlap: what is seen is both
+          EXPECT_TRUE(seen->id.empty() || seen->id == idOf(lamp.frequency))
+              << seen->id << " at " << idOf(lamp.frequency) << ", frame " << k << ", " << apart;
+        }
+      }
+    }
+  }
+}
+
+TEST(LampTracker, LampThatEntersIsBornWithinTheFramesOfOneSearch)
+{
+  const Scene scene;
+  for (const double v : {50.0, 160.0, 270.0})
+    for (const double share : {0.5, 0.2, 0.1}) {
+      vpLampTracker tracker = scene.tracker();
+      tracker.searchShare = share;
+      const std::vector<Lamp> there = {{60, 60, 2000}, {60, 250, 3500}};
+      int born = -1;
+      const int first = 4, search = static_cast<int>(std::ceil(1 / share));
+      for (int k = 0; k < first + search && born < 0; ++k) {
+        std::vector<Lamp> lamps = there;
+        const Lamp entering = {380.0, v, 2600}; // its middle is in, part of it is not
+        if (k >= first) {
+          lamps.push_back(entering);
+        }
+        for (const vpLampObservation &each : tracker.track(scene.frame(k, lamps))) {
+          if (std::abs(each.outline.centre.x() - entering.u) < 15 &&
+              std::abs(each.outline.centre.y() - v) < 15) {
+            EXPECT_TRUE(each.cut);
+            EXPECT_GT(each.track, 2u);
+            born = k;
+          }
+        }
+      }
+      EXPECT_GE(born, first) << "at " << v << ", share " << share;
+    }
+}
+
+TEST(LampTracker, ExpectedWindowsSaveTheSearch)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  tracker.searchShare = 0.01;
+  std::vector<Lamp> lamps = {{60, 250, 2000}, {160, 250, 3500}};
+  for (int k = 0; k < 3; ++k) {
+    tracker.track(scene.frame(k, lamps));
+  }
+  lamps.push_back({300, 200, 2600});
+  EXPECT_EQ(scene.seen(tracker.track(scene.frame(3, lamps)), lamps[2]), nullptr);
+  const std::vector<vpLampObservation> all = tracker.track(scene.frame(4, lamps), {vpRect(290, 190, 20, 20)});
+  const vpLampObservation *seen = scene.seen(all, lamps[2]);
+  ASSERT_NE(seen, nullptr);
+  EXPECT_EQ(seen->id, "L2600");
+}
+
+TEST(LampTracker, StillPicturesGiveWhatTheWholeFrameGives)
+{
+  for (const bool columns : {false, true}) {
+    const Scene scene(columns);
+    std::vector<Lamp> lamps = three;
+    lamps.push_back({310, 240, 4400});
+    vpLampTracker tracker = scene.tracker();
+    vpLedDetector detector(scene.rig(), Scene::map());
+    for (int k = 0; k < 8; ++k) {
+      const vpVlpFrame frame = scene.frame(k, lamps);
+      detector.detect(frame.I);
+      const std::vector<vpLampObservation> &all = tracker.track(frame);
+      ASSERT_EQ(all.size(), detector.observations().size());
+      for (const vpLampObservation &whole : detector.observations()) {
+        const auto same = std::find_if(all.begin(), all.end(), [&](const vpLampObservation &each) {
+          return (each.point - whole.point).norm() < 0.2;
+        });
+        ASSERT_NE(same, all.end()) << whole.id << ", frame " << k;
+        EXPECT_EQ(same->id, whole.id) << "frame " << k;
+        EXPECT_NEAR(same->time, whole.time, 40e-6);
+        EXPECT_NEAR(same->outline.diameter(), whole.outline.diameter(), 0.3);
+        // The mean of the frames so far is the surer the more there were.
+        EXPECT_LE(same->features.frequencySigma, 1.5 * whole.features.frequencySigma);
+      }
+    }
+  }
+}
+
+TEST(LampTracker, SteadyRegionsAreSeenAndNotFollowed)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  std::vector<Lamp> lamps = three;
+  lamps.push_back({310, 240, 0});
+  const std::vector<vpLampObservation> all = tracker.track(scene.frame(0, lamps));
+  const vpLampObservation *steady = scene.seen(all, lamps[3]);
+  ASSERT_NE(steady, nullptr);
+  EXPECT_EQ(steady->track, 0u);
+  EXPECT_EQ(tracker.tracks(), 3u);
+}
+
+TEST(LampTracker, FrameThatIsNotLaterIsRefusedAndTheNextGoesOn)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  const unsigned int number = scene.seen(tracker.track(scene.frame(3, three)), three[0])->track;
+  for (const int k : {3, 2}) {
+    vpExpectError([&] { tracker.track(scene.frame(k, three)); }, {"time", "0.1 s", "expected"});
+  }
+  EXPECT_EQ(scene.seen(tracker.track(scene.frame(4, three)), three[0])->track, number);
+  tracker.reset();
+  EXPECT_EQ(tracker.tracks(), 0u);
+  const std::vector<vpLampObservation> all = tracker.track(scene.frame(0, three));
+  EXPECT_GT(scene.seen(all, three[0])->track, number) << "a number is given once";
+}
+
+TEST(LampTracker, TimeThatIsNoneIsRefused)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  for (const double time : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    vpVlpFrame frame = scene.frame(0, three);
+    frame.timestamp = time;
+    vpExpectError([&] { tracker.track(frame); }, {"time", "expected"});
+  }
+  EXPECT_EQ(tracker.track(scene.frame(1, three)).size(), 3u);
+}
+
+TEST(LampTracker, PictureOfAnotherSizeIsRefusedAndTheNextGoesOn)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  tracker.track(scene.frame(0, three));
+  vpVlpFrame other = scene.frame(1, three);
+  other.I.resize(100, 200);
+  vpExpectError([&] { tracker.track(other); }, {"200 x 100", "400 x 320"});
+  const std::vector<vpLampObservation> all = tracker.track(scene.frame(1, three));
+  EXPECT_EQ(all.size(), 3u);
+  EXPECT_EQ(tracker.tracks(), 3u);
+}
