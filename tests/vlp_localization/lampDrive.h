@@ -86,6 +86,7 @@ public:
   {
     const vpHomogeneousMatrix off =
         lampScene::frame(m_random.normal(0.003), m_random.normal(0.003), m_random.normal(0.003), 0, 0, 0);
+    filter.principalPoint = filter.focalLength = 0; // the drive's lens is as the rig says
     filter.start(off * m_path(t) * lampScene::rotation({0, 0, m_random.normal(0.003)}), t);
   }
 

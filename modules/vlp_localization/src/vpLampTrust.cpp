@@ -18,7 +18,7 @@ namespace
 {
 const int known = 3;        // frames after which a lamp's place and size are its own
 const double memory = 0.03; // share of the latest frame in a running mean: slower than people walk
-const int patience = 60;    // frames in a row that it takes to believe that a lamp has become smaller
+const int patience = 60;    // frames in a row that it takes to believe that a lamp is of another size
 
 Eigen::Vector2d seenExtent(const vpLampOutline &outline)
 {
@@ -92,7 +92,7 @@ std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &se
   const Eigen::Vector2d more = (size - past.size).cwiseQuotient(tolerance);
   past.smaller = more.minCoeff() < -1 || seen.outline.shape != past.shape ? past.smaller + 1 : 0;
   past.larger = more.maxCoeff() > 1 && past.smaller == 0 ? past.larger + 1 : 0;
-  if (past.smaller > patience || past.larger > known) { // so it is, then
+  if (past.smaller > patience || past.larger > patience) { // so it is, then
     past.size = size;
     past.shape = seen.outline.shape;
     past.smaller = past.larger = 0;

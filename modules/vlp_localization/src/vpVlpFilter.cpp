@@ -155,7 +155,10 @@ bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
   static const double chance = 2, beyond = 6; // standard deviations of a chi-square
   static const double calming = 0.6, rousing = 3;
   const double excess = (chiSquare - degreesOfFreedom) / std::sqrt(2.0 * std::max(1, degreesOfFreedom));
-  m_unrest = std::clamp(m_unrest * (excess > chance ? rousing : calming), calmest, 1.0);
+  // One lamp does not show whether the robot turns about it.
+  static const double alone = 0.03;
+  const double least = degreesOfFreedom > 2 ? calmest : alone;
+  m_unrest = std::clamp(m_unrest * (excess > chance ? rousing : calming), least, 1.0);
   return excess < beyond;
 }
 
@@ -415,8 +418,8 @@ void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matri
 {
   const Matrix PH = m_P * H.transpose();
   Matrix K = (H * PH + R).ldlt().solve(PH.transpose()).transpose();
-  // Errors of mount, lens and map are considered, not estimated: a hundredth of a pixel, seen again and again about
-  // ever other linearisations, would seem to tell them.
+  // Errors of mount, lens and map are considered, not estimated: a hundredth of a pixel, seen again and again
+  // about ever other linearisations, would seem to tell them.
   K.middleRows(mount, mark0 - mount).setZero();
   K.bottomRows(m_x.size() - lamps).setZero();
   const Vector correction = K * innovation;

@@ -66,7 +66,12 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
     follow(location, usable);
   } else {
     location.fix = solve(location.observations, usable);
-    if (tracking && location.fix.valid && !location.fix.ambiguous) {
+    if (tracking && location.fix.valid && !asBefore(location.observations, location.fix)) {
+      location.fix = vpVlpFix();
+      location.fix.refusal =
+          "the lamps are not as large as they were: partly hidden, or one behind the other";
+      vpLampConsensus::explain(location.fix, usable, location.observations);
+    } else if (tracking && location.fix.valid && !location.fix.ambiguous) {
       begin(location);
     }
   }
@@ -218,7 +223,11 @@ void vpVlpLocalizer::startAt(const vpVlpLocation &location)
 */
 void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
+  std::vector<vpLampObservation> all = location.observations;
   const std::vector<size_t> whole = unchanged(location, usable);
+  if (2 * whole.size() < usable.size() && elsewhere(all, usable, location)) {
+    return;
+  }
   const vpVlpFilter before = filter;
   const vpLampTrust trusted = *m_trust;
   const std::vector<vpLampObservation> seen = location.observations;
@@ -257,7 +266,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   const vpVlpFix alone = solve(apart, whole);
   m_disagreements += alone.valid ? 1 : 0;
   static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
-  if (alone.valid && !alone.ambiguous &&
+  if (alone.valid && !alone.ambiguous && asBefore(apart, alone) &&
       (lost || contradictory || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
     if (contradictory) {
       filter.doubtClaims();
@@ -360,6 +369,44 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
   fix.wMc = marked.wMc;
   fix.covariance = marked.covariance;
   return fix;
+}
+
+/*!
+  Whether lamps that seem to have changed are as before from where they themselves say that the robot is: then
+  it is there, and the filter begins anew.
+*/
+bool vpVlpLocalizer::elsewhere(std::vector<vpLampObservation> &observations,
+                               const std::vector<size_t> &usable, vpVlpLocation &location)
+{
+  const vpVlpFix alone = solve(observations, usable);
+  if (!alone.valid || alone.ambiguous || alone.degreesOfFreedom == 0) {
+    return false;
+  }
+  if (!asBefore(observations, alone)) {
+    return false;
+  }
+  location.observations = observations;
+  location.fix = alone;
+  begin(location);
+  return true;
+}
+
+//! Whether the lamps of a fix look from there as large as they did in the frames before.
+bool vpVlpLocalizer::asBefore(const std::vector<vpLampObservation> &observations, const vpVlpFix &fix) const
+{
+  const std::vector<const vpLamp *> lamps = lampsOf(observations);
+  static const double moving = 0.01; // stretch of a lamp by an unknown velocity, standard deviation
+  for (size_t i = 0; i < observations.size(); ++i) {
+    if (!observations[i].accepted || lamps[i] == nullptr) {
+      continue;
+    }
+    const vpLampExtent expected = {
+        vpLampTrust::extentOf(*lamps[i], fix.wMb, Eigen::Vector3d::Zero(), m_rig, m_lineTime), moving};
+    if (!vpLampTrust(*m_trust).changed(*lamps[i], observations[i], expected).empty()) {
+      return false;
+    }
+  }
+  return true;
 }
 
 //! Those that are as large and of the shape as before; the others get a remark.

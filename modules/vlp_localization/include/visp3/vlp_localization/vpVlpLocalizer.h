@@ -102,6 +102,9 @@ private:
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
 
+  bool elsewhere(std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable,
+                 vpVlpLocation &location);
+  bool asBefore(const std::vector<vpLampObservation> &observations, const vpVlpFix &fix) const;
   std::vector<size_t> unchanged(vpVlpLocation &location, const std::vector<size_t> &usable);
   vpLampExtent expectedExtent(const vpLamp &lamp) const;
   double timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const;
