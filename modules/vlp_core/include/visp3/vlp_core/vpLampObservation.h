@@ -101,10 +101,10 @@ struct VISP_EXPORT vpLampObservation {
   vpStripeFeatures features;
   std::vector<vpLedIdCandidate> candidates; // the likeliest first
   std::string id;                           // of the map's lamp; empty: none of them, or more than one
-  double confidence = 0; // probability of that id; without an id, of being none of the map's lamps
+  double confidence = 0;  // probability of that id; without an id, of being none of the map's lamps
   unsigned int track = 0; // number of the lamp that was followed from frame to frame; 0: none
   bool accepted = false;  // counts for the position
-  std::string remark;    // why it has no id or does not count; empty where there is nothing to say
+  std::string remark;     // why it has no id or does not count; empty where there is nothing to say
 };
 
 END_VISP_NAMESPACE
