@@ -6,12 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <visp3/core/vpException.h>
-#include <visp3/vlp_core/vpNumberText.h>
 
 #include "vpLampGeometry.h"
 
@@ -160,142 +157,6 @@ bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
   const double least = degreesOfFreedom > 2 ? calmest : alone;
   m_unrest = std::clamp(m_unrest * (excess > chance ? rousing : calming), least, 1.0);
   return excess < beyond;
-}
-
-void vpVlpFilter::addOdometry(const vpOdometry &sample)
-{
-  const std::pair<const char *, double> fields[] = {
-      {"timestamp", sample.timestamp}, {"v", sample.v}, {"w", sample.w}};
-  for (const auto &[name, value] : fields) {
-    if (!std::isfinite(value)) {
-      throw vpException(vpException::badValue, std::string("odometry: ") + name + ": " + vpNumberText(value) +
-                                                   ", expected a finite number");
-    }
-  }
-  static const double setBack = 1; // s
-  if (!m_odometry.empty() && sample.timestamp < m_odometry.back().timestamp - setBack) {
-    m_odometry.clear();
-    m_followed = -1e300;
-  }
-  if (m_odometry.empty() || sample.timestamp > m_odometry.back().timestamp) {
-    m_odometry.push_back(sample);
-  }
-}
-
-/*!
-  The base on its arc for \e dt, its velocity constant; backwards where that is negative. \e accelerates: its
-  velocity walks at random.
-*/
-void vpVlpFilter::move(double dt, bool accelerates)
-{
-  const Eigen::Vector2d v = m_x.segment<2>(vx);
-  const double heading = m_x(yaw) + 0.5 * m_x(w) * dt; // chord of the arc
-  const Eigen::Rotation2Dd R(heading);
-  const Eigen::Vector2d ahead = R * v, left(-ahead.y(), ahead.x()); // left: derivative by the heading
-  const double bend = 0.5 * m_x(w) * dt, chord = std::abs(bend) > 1e-9 ? std::sin(bend) / bend : 1;
-  m_x.head<2>() += chord * dt * ahead;
-  m_x(yaw) = std::remainder(m_x(yaw) + m_x(w) * dt, 2 * M_PI);
-
-  const Eigen::Index n = m_x.size();
-  Matrix F = Matrix::Identity(n, n);
-  F.block<2, 1>(x, yaw) = chord * dt * left;
-  F.block<2, 2>(x, vx) = dt * R.toRotationMatrix();
-  F.block<2, 1>(x, w) = 0.5 * dt * dt * left;
-  F(yaw, w) = dt;
-  m_P = F * m_P * F.transpose();
-
-  const double t = std::abs(dt);
-  m_P(z, z) += square(m_unrest * drift) * t;
-  if (freeAttitude) {
-    m_P(roll, roll) += square(tiltDrift) * t;
-    m_P(pitch, pitch) += square(tiltDrift) * t;
-  }
-  if (accelerates) {
-    // Accelerations along x and y of b are alike, so that the heading does not matter.
-    const double a = square(m_unrest * acceleration), b = square(m_unrest * turnAcceleration);
-    const double sign = dt < 0 ? -1 : 1;
-    const Eigen::Matrix2d velocityPlace = sign * 0.5 * a * t * t * R.toRotationMatrix();
-    m_P.block<2, 2>(x, x).diagonal().array() += a * t * t * t / 3;
-    m_P.block<2, 2>(x, vx) += velocityPlace;
-    m_P.block<2, 2>(vx, x) += velocityPlace.transpose();
-    m_P.block<2, 2>(vx, vx).diagonal().array() += a * t;
-    m_P(yaw, yaw) += b * t * t * t / 3;
-    m_P(yaw, w) += sign * 0.5 * b * t * t;
-    m_P(w, yaw) += sign * 0.5 * b * t * t;
-    m_P(w, w) += b * t;
-  }
-}
-
-//! The velocity is what the sample says of its interval, whatever it was before.
-void vpVlpFilter::followOdometry(const vpOdometry &sample, double dt)
-{
-  static const double anySpeed = 1, anyTurn = 10; // m/s, rad/s: wheels start and stop within a sample
-  for (int i : {vx, vy, w}) {
-    m_P(i, i) += square(i == w ? anyTurn : anySpeed);
-  }
-  const Eigen::Index n = m_x.size();
-  Matrix H = Matrix::Zero(3, n);
-  H(0, vx) = 1 + m_x(speedScale);
-  H(0, speedScale) = m_x(vx);
-  H(1, vy) = 1;
-  H(2, w) = 1 + m_x(turnScale);
-  H(2, turnScale) = m_x(w);
-  H(2, turnBias) = 1;
-  // An error that changes from sample to sample averages out over samples, however long they are.
-  static const double usual = 0.02; // s
-  const double share = odometryShare * std::sqrt(usual / std::max(dt, 1e-3));
-  Matrix R = Matrix::Zero(3, 3);
-  R(0, 0) = square(odometrySpeed) + square(share * sample.v);
-  R(1, 1) = square(sidewaysSpeed);
-  R(2, 2) = square(odometryTurnRate) + square(share * sample.w);
-  const Eigen::Vector3d innovation(sample.v - (1 + m_x(speedScale)) * m_x(vx), -m_x(vy),
-                                   sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
-  measure(H, innovation, R);
-}
-
-void vpVlpFilter::advance(double time)
-{
-  if (!m_started) {
-    return;
-  }
-  while (m_odometry.size() > 1 && m_odometry[1].timestamp <= m_time) {
-    m_odometry.pop_front();
-  }
-  while (time > m_time && m_odometry.size() > 1) {
-    const vpOdometry &begin = m_odometry[0], &end = m_odometry[1];
-    static const double gap = 0.5; // s: of a longer interval the mean says little
-    if (begin.timestamp > m_time) {
-      wander(std::min(time, begin.timestamp));
-      continue;
-    }
-    const double until = std::min(time, end.timestamp);
-    if (end.timestamp - begin.timestamp > gap) {
-      wander(until);
-    } else {
-      if (m_followed != end.timestamp) {
-        followOdometry(end, end.timestamp - begin.timestamp);
-        m_followed = end.timestamp;
-      }
-      move(until - m_time, false);
-      m_time = until;
-    }
-    if (m_time == end.timestamp) {
-      m_odometry.pop_front();
-    }
-  }
-  wander(time);
-}
-
-//! To a time by random accelerations.
-void vpVlpFilter::wander(double time)
-{
-  static const double longest = 0.1; // s, of a step
-  const double way = time - m_time;
-  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(1e6, std::abs(way)) / longest)), 1, 1000);
-  for (int k = 0; k < steps && way != 0; ++k) {
-    move(way / steps, true);
-  }
-  m_time = time;
 }
 
 void vpVlpFilter::mark(double time)

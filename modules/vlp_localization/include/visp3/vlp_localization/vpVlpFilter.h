@@ -25,10 +25,10 @@ BEGIN_VISP_NAMESPACE
     uncertain as its rotationSigma says (known where that is 0), unless the attitude is free;
   - the velocity of the base along x and y of b and its turn rate, constant but for random accelerations;
   - the odometry's errors: scales of speed and turn rate, bias of the turn rate;
-  - what the rig's mount and the map's lamps may be off by, where they state a standard deviation. These
-  errors are the same in every frame, which no averaging over frames takes away: as states they are estimated
-  where the motion shows them and keep the covariance honest where it does not (Schmidt 1966; Smith, Self and
-    Cheeseman 1990).
+  - what the rig's mount and the map's lamps may be off by, where they state a standard deviation, and with
+    the mount's principal point and focal length, for which a rig has none. These errors are the same in every
+    frame, and no averaging over frames takes them away: they are considered, not estimated (Schmidt 1966), so
+    that the covariance stays honest. Roll and pitch are estimated, as far as a turning robot shows them.
 
   The measurement is that of the solvers: ray = projection of bRc^T (wRb^T (P - wtb) - btc).
 

@@ -88,6 +88,7 @@ private:
 
   vpVlpFix solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const;
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
+  bool correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
   vpVlpFix correct(vpVlpLocation &location, const std::vector<size_t> &usable);
   double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
   bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused);
@@ -116,6 +117,7 @@ private:
   vpLampMap m_map;
   std::unordered_map<std::string, size_t> m_lampOf; // index into the map, by id
   double m_lineTime = 0;                            // s, from line to line
+  double m_halfReadout = 0;                         // s, from a frame's time stamp to its middle line
   std::optional<LastPose> m_lastPose;
   std::optional<double> m_lastFrame; // s
   std::unique_ptr<vpLampTrust> m_trust;

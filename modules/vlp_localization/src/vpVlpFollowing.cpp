@@ -1,0 +1,366 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// How vpVlpLocalizer carries a pose from frame to frame.
+
+#include <visp3/vlp_localization/vpVlpLocalizer.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "vpLampConsensus.h"
+#include "vpLampTrust.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const double mostStrain = 8; // standard deviations
+const char *const misplaced = "not where the robot's motion has it";
+
+size_t accepted(const vpVlpLocation &location)
+{
+  return static_cast<size_t>(std::count_if(location.observations.begin(), location.observations.end(),
+                                           [](const vpLampObservation &lamp) { return lamp.accepted; }));
+}
+} // namespace
+
+//! Where the picture shows the map's lamps, by the pose that the filter expects.
+std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
+{
+  std::vector<vpRect> windows;
+  if (!filter.started()) {
+    return windows;
+  }
+  static const double farthest = 3;   // heights of a lamp above the camera
+  static const double doubtful = 0.1; // rad: the lamps are then anywhere
+  const vpVlpFix fix = filter.fixAt(time + m_halfReadout);
+  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
+               turn = std::sqrt(fix.covariance(5, 5));
+  for (const vpLamp &lamp : m_map.lamps) {
+    const double height = lamp.position.z() - fix.wMc[2][3],
+                 apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
+    if (!(height > 0 && apart < farthest * height && turn + place / height < doubtful)) {
+      continue;
+    }
+    Eigen::Vector2d middle;
+    const Eigen::Vector2d extent = vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
+    if (!vpLampTrust::pixelOf(lamp.position, fix.wMc.inverse(), m_rig, middle)) {
+      continue;
+    }
+    static const double sigmas = 3, around = 0.7; // of the extent, on each side
+    const double doubt = sigmas * m_rig.camera.get_px() * (place + turn * apart) / height;
+    const Eigen::Vector2d half =
+        (std::isfinite(lamp.size) ? 0.5 + around : 0.2) * extent + Eigen::Vector2d(doubt, doubt);
+    const Eigen::Vector2d least = (middle - half).cwiseMax(0.0),
+                          most = (middle + half).cwiseMin(Eigen::Vector2d(m_rig.width - 1, m_rig.height - 1));
+    if ((least.array() < most.array()).all()) {
+      windows.emplace_back(least.x(), least.y(), most.x() - least.x(), most.y() - least.y());
+    }
+  }
+  return windows;
+}
+
+//! Starts the filter at the location's pose, with the lamps that it rests on.
+void vpVlpLocalizer::begin(vpVlpLocation &location)
+{
+  filter.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
+  startAt(location);
+  m_trust->forgetPlaces();
+  m_trust->mapTolerance = mapTolerance;
+  m_disagreements = m_contradictions = m_followed = 0;
+  std::vector<size_t> members;
+  for (size_t i = 0; i < location.observations.size(); ++i) {
+    if (location.observations[i].accepted) {
+      members.push_back(i);
+    }
+  }
+  if (strain(location, members) > mostStrain) {
+    filter.doubtClaims();
+    startAt(location);
+  }
+  vpVlpLocation first = location, second = location;
+  correct(first, members);
+  filter.startAgain();
+  m_trust->forgetPlaces();
+  addMotionDoubt(location, members);
+  correct(second, members);
+}
+
+//! What a single frame's pose is off by where the robot moved between its time stamp and the lamps' lines.
+void vpVlpLocalizer::addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const
+{
+  double since = 0; // s
+  for (size_t i : members) {
+    since += (timeOf(location, location.observations[i]) - location.timestamp) /
+             static_cast<double>(members.size());
+  }
+  const Eigen::Matrix3d doubt =
+      since * since * (filter.velocityCovariance() + filter.velocity() * filter.velocity().transpose());
+  for (int i : {0, 1}) {
+    location.fix.covariance(i, i) += std::max(doubt(0, 0), doubt(1, 1)); // whatever its heading
+  }
+  location.fix.covariance(5, 5) += doubt(2, 2);
+}
+
+//! With the velocity that the last pose tells, where there is one that the robot can have come from.
+void vpVlpLocalizer::startAt(const vpVlpLocation &location)
+{
+  static const double recently = 1; // s
+  filter.start(location.fix.wMb, location.timestamp);
+  if (!m_lastPose || location.timestamp - m_lastPose->time >= recently) {
+    return;
+  }
+  const double since = location.timestamp - m_lastPose->time;
+  const vpHomogeneousMatrix way = m_lastPose->fix.wMb.inverse() * location.fix.wMb;
+  const double turn = std::atan2(way[1][0], way[0][0]);
+  if (std::hypot(way[0][3], way[1][3]) < maxSpeed * since && std::abs(turn) < maxTurnRate * since) {
+    filter.comeFrom(m_lastPose->fix, since);
+  } // else it was carried
+}
+
+/*!
+  The pose that the filter carries, corrected. A robot that was carried away shows lamps that agree with each
+  other on another place; camera and map that are not as good as they say are contradicted by their lamps for
+  good. Then the filter begins anew, where the lamps of this frame alone say.
+*/
+void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &usable)
+{
+  std::vector<vpLampObservation> all = location.observations;
+  const std::vector<size_t> whole = unchanged(location, usable);
+  if (2 * whole.size() < usable.size() && elsewhere(all, usable, location)) {
+    return;
+  }
+  std::vector<vpLampObservation> apart = location.observations;
+  const bool roused = correctRestless(location, whole);
+  const bool contradictory = contradicts(location, whole, roused);
+  const bool few = 2 * accepted(location) < whole.size(),
+             lost = filter.state(location.fix) == vpVlpFilter::State::lost;
+  m_disagreements = few ? m_disagreements : 0;
+  if (!few && !lost && !contradictory) {
+    return;
+  }
+  const vpVlpFix alone = solve(apart, whole);
+  m_disagreements += alone.valid ? 1 : 0;
+  static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
+  if (alone.valid && !alone.ambiguous && asBefore(apart, alone) &&
+      (lost || contradictory || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
+    if (contradictory) {
+      filter.doubtClaims();
+    }
+    location.observations = apart;
+    location.fix = alone;
+    begin(location);
+  } else if (lost) {
+    filter.stop();
+    location.fix = alone;
+    location.observations = apart;
+  } else if (alone.valid && few) {
+    location.fix = vpVlpFix();
+    location.fix.refusal = "the lamps agree with each other, and not with the robot's motion";
+  }
+}
+
+/*!
+  Corrects by the lamps of a frame: as if the robot went on as before; where that is beyond chance, as if it
+  may start, stop or turn; where few lamps fit even so, as if its velocity were anybody's guess. \return
+  Whether lamps were seen that did not fit a robot that goes on as before.
+*/
+bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole)
+{
+  const vpVlpFilter before = filter;
+  const vpLampTrust trusted = *m_trust;
+  const std::vector<vpLampObservation> seen = location.observations;
+  auto again = [&] {
+    filter = before;
+    *m_trust = trusted;
+    location.observations = seen;
+    filter.rouse();
+  };
+  auto few = [&] { return 2 * accepted(location) < whole.size(); };
+  bool roused = false;
+  location.fix = correct(location, whole);
+  if (accepted(location) == 0 || few() ||
+      !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
+    roused = accepted(location) > 0;
+    again();
+    location.fix = correct(location, whole);
+  }
+  if (few()) {
+    again();
+    filter.forgetVelocity();
+    location.fix = correct(location, whole);
+  }
+  return roused;
+}
+
+/*!
+  How far the lamps of a frame contradict each other under what camera and map say of themselves, whatever
+  pose and constant velocity the robot has: their innovations in a filter that knows neither, as standard
+  deviations of a chi-square beyond its mean.
+*/
+double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const
+{
+  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
+  vpVlpFilter alone = filter;
+  alone.start(location.fix.wMb, location.timestamp);
+  double chiSquare = 0, degrees = 0;
+  for (int round = 0; round < 2; ++round) {
+    chiSquare = degrees = 0;
+    alone.calm();
+    alone.mark(location.timestamp);
+    for (size_t i : inTime(location, usable)) {
+      if (lamps[i] != nullptr && location.observations[i].accepted) {
+        const vpLampSight sight = vpLampSight::from(*lamps[i], location.observations[i], m_rig.camera);
+        alone.advance(timeOf(location, location.observations[i]));
+        chiSquare += alone.innovation(sight).distance(0);
+        degrees += 2;
+        alone.update(sight);
+      }
+    }
+    if (round == 0) {
+      alone.startAgain();
+    }
+  }
+  return (chiSquare - degrees) / std::sqrt(2 * std::max(1.0, degrees));
+}
+
+/*!
+  Whether lamps contradict what camera and map say of themselves, frame after frame: each other, or any but a
+  robot that never comes to rest. A frame or two of it may be one that starts or stops.
+*/
+bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable,
+                                 bool roused)
+{
+  static const int young = 3; // frames since the start: its velocity rests on the claims
+  const int often = ++m_followed <= young && !filter.doubtsClaims() ? 1 : 8; // frames
+  const auto apart = std::count_if(usable.begin(), usable.end(), [&location](size_t i) {
+    return location.observations[i].remark == misplaced;
+  });
+  const bool now = usable.size() > 2 && (roused || 2 * static_cast<size_t>(apart) >= usable.size() ||
+                                         strain(location, usable) > mostStrain);
+  m_contradictions = now ? m_contradictions + 1 : std::max(0, m_contradictions - 1);
+  return m_contradictions >= often;
+}
+
+//! Predicts to the frame and lets each lamp correct at the time of its line.
+vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> &usable)
+{
+  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
+  vpVlpFix fix;
+  filter.mark(location.timestamp);
+  for (size_t i : inTime(location, usable)) {
+    vpLampObservation &seen = location.observations[i];
+    const vpLamp *lamp = lamps[i];
+    if (lamp == nullptr) {
+      continue;
+    }
+    filter.advance(timeOf(location, seen));
+    vpLampSight sight = vpLampSight::from(*lamp, seen, m_rig.camera);
+    const Eigen::Vector2d offset = m_trust->offset(*lamp);
+    sight.covariance += offset * offset.transpose();
+    const vpVlpFilter::Innovation innovation = filter.innovation(sight);
+    if (!innovation.inFront || !m_trust->inPlace(*lamp, innovation)) {
+      seen.remark = misplaced;
+      continue;
+    }
+    m_trust->believe(*lamp, seen, innovation, expectedExtent(*lamp));
+    filter.update(sight);
+    seen.accepted = true;
+    seen.remark.clear();
+    fix.lamps.push_back(lamp->id);
+    fix.residuals.push_back(innovation.ray);
+    fix.chiSquare += innovation.distance(0);
+    fix.degreesOfFreedom += 2;
+  }
+  const vpVlpFix marked = filter.marked();
+  fix.valid = marked.valid;
+  fix.wMb = marked.wMb;
+  fix.wMc = marked.wMc;
+  fix.covariance = marked.covariance;
+  return fix;
+}
+
+/*!
+  Whether lamps that seem to have changed are as before from where they themselves say that the robot is: then
+  it is there, and the filter begins anew.
+*/
+bool vpVlpLocalizer::elsewhere(std::vector<vpLampObservation> &observations,
+                               const std::vector<size_t> &usable, vpVlpLocation &location)
+{
+  const vpVlpFix alone = solve(observations, usable);
+  if (!alone.valid || alone.ambiguous || alone.degreesOfFreedom == 0 || !asBefore(observations, alone)) {
+    return false;
+  }
+  location.observations = observations;
+  location.fix = alone;
+  begin(location);
+  return true;
+}
+
+//! Whether the lamps of a fix look from there as large as they did in the frames before.
+bool vpVlpLocalizer::asBefore(const std::vector<vpLampObservation> &observations, const vpVlpFix &fix) const
+{
+  const std::vector<const vpLamp *> lamps = lampsOf(observations);
+  vpLampTrust trust = *m_trust;      // which counts how often it is asked
+  static const double moving = 0.01; // stretch of a lamp by an unknown velocity, standard deviation
+  for (size_t i = 0; i < observations.size(); ++i) {
+    if (!observations[i].accepted || lamps[i] == nullptr) {
+      continue;
+    }
+    const vpLampExtent expected = {
+        vpLampTrust::extentOf(*lamps[i], fix.wMb, Eigen::Vector3d::Zero(), m_rig, m_lineTime), moving};
+    if (!trust.changed(*lamps[i], observations[i], expected).empty()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+//! Those that are as large and of the shape as before; the others get a remark.
+std::vector<size_t> vpVlpLocalizer::unchanged(vpVlpLocation &location, const std::vector<size_t> &usable)
+{
+  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
+  std::vector<size_t> same;
+  for (size_t i : usable) {
+    vpLampObservation &seen = location.observations[i];
+    const std::string change =
+        lamps[i] == nullptr ? "" : m_trust->changed(*lamps[i], seen, expectedExtent(*lamps[i]));
+    if (change.empty()) {
+      same.push_back(i);
+    } else {
+      seen.remark = change;
+    }
+  }
+  return same;
+}
+
+//! Of a lamp in the picture, seen from where the filter is.
+vpLampExtent vpVlpLocalizer::expectedExtent(const vpLamp &lamp) const
+{
+  const vpVlpFix fix = filter.now();
+  const Eigen::Matrix3d doubt = filter.velocityCovariance();
+  const double height = lamp.position.z() - fix.wMc[2][3],
+               apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
+  const double speed = std::sqrt(std::max(doubt(0, 0), doubt(1, 1))) + apart * std::sqrt(doubt(2, 2));
+  return {vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime),
+          m_rig.camera.get_px() * speed / std::max(height, 1e-3) * std::abs(m_lineTime)};
+}
+
+//! Lamps in the order in which their lines were read.
+std::vector<size_t> vpVlpLocalizer::inTime(const vpVlpLocation &location, std::vector<size_t> which)
+{
+  std::sort(which.begin(), which.end(), [&location](size_t a, size_t b) {
+    return location.observations[a].time < location.observations[b].time;
+  });
+  return which;
+}
+
+//! At which a lamp was seen, s.
+double vpVlpLocalizer::timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const
+{
+  return location.timestamp + (compensateShutter ? seen.time : 0);
+}
+
+END_VISP_NAMESPACE
