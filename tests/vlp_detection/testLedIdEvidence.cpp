@@ -103,6 +103,29 @@ TEST(LedIdEvidence, AnotherLampBeginsAnew)
   EXPECT_EQ(evidence.frames(), 1u);
 }
 
+TEST(LedIdEvidence, TwoFramesTellADutyThatEachHides)
+{
+  // Each frame knows the frequency if it knows the duty, and the two agree about one duty only.
+  auto frame = [](double slope) {
+    vpStripeFeatures seen = stripes(5807 + 0.1 * slope, 0.3 * std::abs(slope), 0.3, 0.15);
+    for (double duty = 0.1; duty < 0.55; duty += 0.05) {
+      seen.alongDuty.push_back({duty, 5807 + slope * (duty - 0.2), 0.5, 0});
+    }
+    return seen;
+  };
+  vpLedIdEvidence evidence;
+  EXPECT_TRUE(evidence.add(frame(30)));
+  EXPECT_GT(evidence.features().frequencySigma, 2);
+  EXPECT_TRUE(evidence.add(frame(-40)));
+  EXPECT_NEAR(evidence.features().frequency, 5807, 0.6);
+  EXPECT_LT(evidence.features().frequencySigma, 0.8);
+  EXPECT_NEAR(evidence.features().duty, 0.2, 0.02);
+  // A third one that knows the duty leaves no other open.
+  EXPECT_TRUE(evidence.add(stripes(5807, 0.5, 0.2, 0.005)));
+  EXPECT_TRUE(evidence.features().alongDuty.empty());
+  EXPECT_NEAR(evidence.features().frequency, 5807, 0.5);
+}
+
 TEST(LedIdEvidence, FramesThatSayNothingChangeNothing)
 {
   vpLedIdEvidence evidence;

@@ -132,6 +132,23 @@ TEST(LedIdRecognizer, HiddenEdgesNameNoLamp)
   EXPECT_NE(seen.remark.find("hide"), std::string::npos);
 }
 
+TEST(LedIdRecognizer, StatedDutySaysWhichFrequencyOfARidge)
+{
+  // The stripes are those of any duty, each with a frequency of its own.
+  vpLampObservation seen = stripes(2003, 4, 0.4);
+  seen.features.dutySigma = 0.1;
+  for (double duty = 0.2; duty < 0.62; duty += 0.05) {
+    seen.features.alongDuty.push_back({duty, 2000 + 50 * (duty - 0.2), 1, 0});
+  }
+  for (double duty : {0.25, 0.4, 0.55}) {
+    const double there = 2000 + 50 * (duty - 0.2);
+    EXPECT_EQ(recognized({{lamp("A", there, duty)}}, seen, 1e-6).id, "A") << duty;
+    EXPECT_TRUE(recognized({{lamp("A", there + 8, duty)}}, seen, 1e-6).id.empty()) << duty;
+  }
+  EXPECT_TRUE(recognized({{lamp("A", 2030, 0.8)}}, seen, 1e-6).id.empty()); // no such slice
+  EXPECT_EQ(recognized({{lamp("A", 2003)}}, seen, 1e-6).id, "A");
+}
+
 TEST(LedIdRecognizer, PhaseDifferenceTellsTwoPulseLampsApart)
 {
   vpLampMap map{{lamp("A", 1500, 0.3), lamp("B", 1500, 0.3), lamp("C", 1500, 0.3)}};

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "vpDutyRidge.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -64,7 +66,11 @@ bool vpLedIdEvidence::add(const vpStripeFeatures &seen)
   m_features.frequencySigma = before.frequencySigma;
   average(m_features.frequency, m_features.frequencySigma, seen.frequency, seen.frequencySigma);
   m_features.frequencyBound = 1 / std::hypot(1 / before.frequencyBound, 1 / seen.frequencyBound);
-  if (seen.signal == Signal::coded) {
+  m_features.alongDuty = vpDutyRidge::together(before, seen);
+  if (!m_features.alongDuty.empty()) {
+    vpDutyRidge::settle(m_features);
+    m_features.alongDuty = vpDutyRidge::whereOpen(m_features.alongDuty);
+  } else if (seen.signal == Signal::coded) {
     m_features.chipsConfidence = 1 - (1 - before.chipsConfidence) * (1 - seen.chipsConfidence);
   } else {
     m_features.duty = before.duty;

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <string>
 
+#include "vpDutyRidge.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -62,7 +64,7 @@ std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt, d
   if (!(seen.frequencySigma < maxFrequencyDoubt * seen.frequency)) {
     return "too few stripes for a frequency";
   }
-  if (seen.frequencySigma > maxSpread * seen.frequencyBound) {
+  if (seen.alongDuty.empty() && seen.frequencySigma > maxSpread * seen.frequencyBound) {
     return "its edges hide between the lines";
   }
   return "";
@@ -74,6 +76,8 @@ std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt, d
 struct vpLedIdRecognizer::Candidate {
   size_t identifier;
   double frequency; // Hz
+  double seen;      // Hz, as the stripes would have it with its duty
+  double reach;     // Hz, that what was seen may be off
   double sigma;     // Hz, of the frequency seen about it, row time exact
   double clock;     // Hz, the share of it that is the lamp's own
   double weight;    // prior probability, times the density of all features but the frequency
@@ -84,14 +88,12 @@ struct vpLedIdRecognizer::Candidate {
 //! One lamp as the recogniser works on it.
 struct vpLedIdRecognizer::Sight {
   bool readable = false;
-  double frequency = 0; // Hz
-  double reach = 0;     // Hz, that the estimate may be off
-  double unknown = 0;   // prior probability times density of a lamp that the map does not know
+  double unknown = 0; // prior probability times density of a lamp that the map does not know
   std::vector<Candidate> candidates;
 
   double density(const Candidate &candidate, double rowTimeError) const
   {
-    return normalDensity((frequency - candidate.frequency * (1 + rowTimeError)) / candidate.sigma,
+    return normalDensity((candidate.seen - candidate.frequency * (1 + rowTimeError)) / candidate.sigma,
                          candidate.sigma);
   }
   //! Of what was seen, whichever lamp it is.
@@ -120,7 +122,8 @@ void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const st
   for (Candidate &candidate : candidates) {
     const double expected = candidate.frequency * (1 + mean);
     const double clocks = std::hypot(candidate.clock, candidate.frequency * std::sqrt(variance));
-    candidate.fits = candidate.fits && std::abs(frequency - expected) < std::hypot(reach, gate * clocks);
+    candidate.fits =
+        candidate.fits && std::abs(candidate.seen - expected) < std::hypot(candidate.reach, gate * clocks);
     candidate.probability = 0;
     for (size_t k = 0; k < errors.size(); ++k) {
       candidate.probability += weights[k] * candidate.weight * density(candidate, errors[k]);
@@ -164,22 +167,23 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   candidate.identifier = index;
   candidate.frequency = sent.repetitionFrequency();
   candidate.clock = 1e-6 * identifier.oscillatorPpm * candidate.frequency;
-  candidate.sigma = std::hypot(seen.frequencySigma, candidate.clock);
-  candidate.weight = (1 - unknownPrior) * static_cast<double>(identifier.lamps.size()) /
-                     static_cast<double>(m_map.lamps.size());
-  candidate.fits = true;
-  auto compare = [&](double difference, double sigma) {
-    candidate.weight *= normalDensity(difference / sigma, sigma);
-    candidate.fits = candidate.fits && std::abs(difference) < shapeGate * sigma;
-  };
   // Saturation widens the lit stripes.
   static const double bySaturation = 0.15;
-  if (sent.duty) {
-    compare(seen.duty - *sent.duty,
-            std::sqrt(square(seen.dutySigma) + square(dutyError) + square(bySaturation * lamp.saturated)));
-  }
+  const vpDutyRidge::Reading reading =
+      vpDutyRidge::of(seen, sent.duty, std::hypot(dutyError, bySaturation * lamp.saturated));
+  candidate.seen = reading.frequency;
+  candidate.reach = reachOf(reading.frequencySigma, seen.frequencyBound);
+  candidate.sigma = std::hypot(reading.frequencySigma, candidate.clock);
+  candidate.weight = (1 - unknownPrior) * static_cast<double>(identifier.lamps.size()) /
+                     static_cast<double>(m_map.lamps.size());
+  candidate.weight *= reading.density;
+  candidate.fits =
+      reading.distance < shapeGate && !(reading.frequencySigma > maxSpread * seen.frequencyBound);
   if (sent.kind == vpModulation::Kind::twoPulse) {
-    compare(seen.phaseDifference - sent.phaseDifference, std::hypot(seen.phaseDifferenceSigma, phaseError));
+    const double sigma = std::hypot(seen.phaseDifferenceSigma, phaseError),
+                 z = (seen.phaseDifference - sent.phaseDifference) / sigma;
+    candidate.weight *= normalDensity(z, sigma);
+    candidate.fits = candidate.fits && std::abs(z) < shapeGate;
   }
   if (sent.kind == vpModulation::Kind::word) {
     if (!vpModulation::sameWord(seen.chips, sent.chips())) {
@@ -198,23 +202,29 @@ vpLedIdRecognizer::Sight vpLedIdRecognizer::sightOf(const vpLampObservation &lam
     return sight;
   }
   sight.readable = true;
-  sight.frequency = seen.frequency;
-  sight.reach = gate * seen.frequencySigma;
-  if (std::isfinite(seen.frequencyBound)) {
-    sight.reach = std::min(sight.reach, boundGate * seen.frequencyBound);
-  }
   sight.unknown = unknownPrior * unknownDensity(seen);
+  double spread = 2 * gate * seen.frequencySigma; // Hz
+  for (const vpDutySlice &slice : seen.alongDuty) {
+    spread = std::max(spread, std::abs(slice.frequency - seen.frequency) + 2 * gate * slice.frequencySigma);
+  }
   // All that may compete; an oscillator of the map may be as wide as the range of frequencies.
   for (size_t index : m_byFrequency) {
     const vpIdentifier &identifier = m_identifiers[index];
     const double f = identifier.modulation.repetitionFrequency();
     const double reach = farthestRowTime * m_relativeRowTime * f +
-                         2 * gate * std::hypot(seen.frequencySigma, 1e-6 * identifier.oscillatorPpm * f);
+                         std::hypot(spread, 2e-6 * gate * identifier.oscillatorPpm * f);
     if (std::abs(seen.frequency - f) < reach) {
       addCandidate(sight, lamp, index);
     }
   }
   return sight;
+}
+
+//! Hz, that an estimate may be off.
+double vpLedIdRecognizer::reachOf(double frequencySigma, double frequencyBound) const
+{
+  const double reach = gate * frequencySigma;
+  return std::isfinite(frequencyBound) ? std::min(reach, boundGate * frequencyBound) : reach;
 }
 
 //! A grid of them, fine enough for the sharpest candidate.

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "vpDutyRidge.h"
 #include "vpStripeStarts.h"
 #include "vpWaveformFit.h"
 #include "vpWordSearch.h"
@@ -146,6 +147,7 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
   features.exposure = fit.value(P::exposure);
   features.exposureSigma = fit.sigma(P::exposure);
   features.misfit = fit.misfit();
+  features.alongDuty.clear();
   if (twoPulse) {
     features.phaseDifference = fit.value(P::phaseDifference);
     features.phaseDifferenceSigma = fit.sigma(P::phaseDifference);
@@ -198,6 +200,7 @@ void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Fou
   features.signal = vpStripeFeatures::Signal::coded;
   features.frequency = features.frequencySigma = features.frequencyBound = none;
   features.duty = features.dutySigma = none;
+  features.alongDuty.clear();
   features.phaseDifference = features.phaseDifferenceSigma = none;
   features.exposure = features.exposureSigma = none;
   if (found) {
@@ -286,6 +289,10 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   if (pwm) {
     pwm->integrate();
     take(features, *pwm, false);
+    if (pwm->hidesDuty()) {
+      features.alongDuty = pwm->alongDuty();
+      vpDutyRidge::settle(features);
+    }
   }
   // A second pulse explains a little of what blur and tone curve do to one, too.
   static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;

@@ -60,6 +60,15 @@ public:
   //! Turns values and standard deviations into those of the posterior about the minimum that run() found.
   void integrate();
 
+  /*!
+    Whether pulses may stay within single lines over the whole profile: short ones of a bright lamp and longer
+    ones of a dim lamp then look alike, and the frequency depends on which they are.
+  */
+  bool hidesDuty() const;
+  //! The posterior of the frequency at duties about the fitted one, as far as they explain the profile; none
+  //! where no other duty does. After integrate().
+  std::vector<vpDutySlice> alongDuty() const;
+
   double value(Parameter p) const { return m_x(p); }
   double sigma(Parameter p) const { return m_sigma(p); }
   /*!
@@ -83,7 +92,9 @@ private:
     Matrix covariance;
     double effective; // share of the samples that count
   };
+  Posterior posterior();
   Posterior sampled(const Posterior &from, int samples, double temperature);
+  vpDutySlice slice(double atDuty);
 
   //! The lamp's light at one line, averaged over the exposure, and its derivatives.
   double waveform(const Vector &x, double t, Vector &derivative) const;
@@ -95,7 +106,16 @@ private:
   double envelope(size_t i) const;
   bool isFree(int parameter) const
   {
-    return parameter == phaseDifference ? m_settings.twoPulse : parameter != exposure || m_freeExposure;
+    switch (parameter) {
+    case phaseDifference:
+      return m_settings.twoPulse;
+    case exposure:
+      return m_freeExposure;
+    case duty:
+      return m_freeDuty;
+    default:
+      return true;
+    }
   }
   double pulses() const { return m_settings.twoPulse ? 2 : 1; } // of a period
   double unlikely(const Vector &x) const;
@@ -112,6 +132,7 @@ private:
   double m_line = 0;           // s, mean distance of the lines
   double m_startFrequency = 0; // Hz
   bool m_freeExposure = true;
+  bool m_freeDuty = true;
   double m_darkness = 0;        // 1 / variance of the offset about 0
   std::vector<double> m_weight; // 1 / variance of each line
   std::vector<double> m_given;  // envelope, grey levels

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "vpDutyRidge.h"
 #include "vpStripeLimits.h"
 
 BEGIN_VISP_NAMESPACE
@@ -56,6 +58,24 @@ void vpWaveformFit::integrate()
   const double degrees = degreesOfFreedom();
   m_inflation = std::max(1.0, together * m_chiSquare / degrees) * (1 + 6 / (degrees * degrees));
 
+  const Posterior found = posterior();
+  m_x = found.mean;
+  const double misplaced =
+      vpStripeLimits::untrue * std::max(0.0, m_line - m_profile->exposure) * m_x(frequency); // periods
+  Vector doubt = Vector::Zero();
+  doubt(duty) = doubt(phaseDifference) = misplaced;
+  doubt(frequency) = misplaced / m_half;
+  if (const std::optional<Vector> other = exchanged()) {
+    const double spread = vpStripeLimits::spread((*other)(duty)-m_x(duty), unlikely(*other) - unlikely(m_x));
+    doubt(duty) = std::hypot(doubt(duty), spread);
+  }
+  m_sigma = (found.covariance.diagonal().cwiseMax(0) + doubt.cwiseAbs2()).cwiseSqrt();
+  m_cost = cost(m_x, true);
+}
+
+//! About the minimum at m_x.
+vpWaveformFit::Posterior vpWaveformFit::posterior()
+{
   // Where no line feels an edge, it lies within half the distance of two lines, about.
   Vector reach = Vector::Ones();
   reach(phase) = reach(duty) = reach(phaseDifference) = 0.5 * m_line * m_x(frequency);
@@ -78,18 +98,64 @@ void vpWaveformFit::integrate()
     }
     posterior = sampled(posterior, 3 * many, m_inflation); // few of which count: it is the smaller one
   }
-  m_x = posterior.mean;
-  const double misplaced =
-      vpStripeLimits::untrue * std::max(0.0, m_line - m_profile->exposure) * m_x(frequency); // periods
-  Vector doubt = Vector::Zero();
-  doubt(duty) = doubt(phaseDifference) = misplaced;
-  doubt(frequency) = misplaced / m_half;
-  if (const std::optional<Vector> other = exchanged()) {
-    const double spread = vpStripeLimits::spread((*other)(duty)-m_x(duty), unlikely(*other) - unlikely(m_x));
-    doubt(duty) = std::hypot(doubt(duty), spread);
+  return posterior;
+}
+
+bool vpWaveformFit::hidesDuty() const
+{
+  static const double hidden = 2;  // lines, of the pulse as it was fitted
+  static const double drift = 1.5; // lines, of a pattern that repeats, over the profile
+  static const int longest = 8;    // lines, of such a pattern
+  if (m_settings.twoPulse || m_x(duty) > hidden * m_x(exposure) * m_x(frequency)) {
+    return false;
   }
-  m_sigma = (posterior.covariance.diagonal().cwiseMax(0) + doubt.cwiseAbs2()).cwiseSqrt();
-  m_cost = cost(m_x, true);
+  const double periods = m_x(frequency) * m_line; // of a line
+  for (int pattern = 1; pattern <= longest; ++pattern) {
+    if (std::abs(std::remainder(pattern * periods, 1)) * static_cast<double>(m_wave.size()) < drift) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<vpDutySlice> vpWaveformFit::alongDuty() const
+{
+  static const double step = 0.04, least = 0.06, // of the duty
+      farthest = 25;                             // chi-square
+  std::vector<vpDutySlice> slices;
+  double best = std::numeric_limits<double>::infinity();
+  for (const double direction : {-step, step}) {
+    vpWaveformFit fit = *this;
+    for (double at = m_x(duty) + (direction > 0 ? direction : 0); at > least && at < 1 - least;
+         at += direction) {
+      slices.push_back(fit.slice(at));
+      best = std::min(best, slices.back().chiSquare);
+      if (slices.back().chiSquare > best + farthest * m_inflation) {
+        break;
+      }
+    }
+  }
+  for (vpDutySlice &slice : slices) {
+    slice.chiSquare = (slice.chiSquare - best) / m_inflation;
+  }
+  std::sort(slices.begin(), slices.end(),
+            [](const vpDutySlice &a, const vpDutySlice &b) { return a.duty < b.duty; });
+  return vpDutyRidge::whereOpen(std::move(slices));
+}
+
+//! With a given duty, from the nearest one's minimum.
+vpDutySlice vpWaveformFit::slice(double atDuty)
+{
+  m_freeDuty = false;
+  m_x(phase) += 0.5 * (atDuty - m_x(duty)); // the pulse's middle stays
+  m_x(duty) = atDuty;
+  descend(20);
+  const Vector minimum = m_x;
+  const double least = m_cost;
+  const Posterior found = posterior();
+  m_x = minimum;
+  return {atDuty, found.mean(frequency), std::sqrt(std::max(0.0, found.covariance(frequency, frequency))),
+          least};
 }
 
 double vpWaveformFit::frequencyBound() const

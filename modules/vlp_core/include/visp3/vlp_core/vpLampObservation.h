@@ -52,6 +52,14 @@ struct VISP_EXPORT vpLampOutline {
   Eigen::Vector2d middle(const vpCameraParameters &camera, const Eigen::Vector3d &cNormal) const;
 };
 
+//! What a lamp's frequency would be, were its duty that.
+struct VISP_EXPORT vpDutySlice {
+  double duty = 0;
+  double frequency = 0;      // Hz
+  double frequencySigma = 0; // Hz, with that duty
+  double chiSquare = 0;      // of the stripes with that duty, beyond the least
+};
+
 //! What the stripes of one lamp say: the paper's features and the frequency itself.
 struct VISP_EXPORT vpStripeFeatures {
   //! coded: strongly modulated, yet neither pwm nor twoPulse explains the stripes: a word.
@@ -67,6 +75,11 @@ struct VISP_EXPORT vpStripeFeatures {
       std::numeric_limits<double>::quiet_NaN();           // Hz, that sigma where no edge hides from the lines
   double duty = std::numeric_limits<double>::quiet_NaN(); // lit share of the period
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
+  /*!
+    Frequencies by duty, the shortest first, where they are known together only: near simple fractions of the
+    rate of lines a short pulse may stay within one line over the whole lamp. Empty elsewhere.
+  */
+  std::vector<vpDutySlice> alongDuty;
   double phaseDifference = std::numeric_limits<double>::quiet_NaN(); // periods, twoPulse only
   double phaseDifferenceSigma = std::numeric_limits<double>::quiet_NaN();
   double exposure = std::numeric_limits<double>::quiet_NaN(); // s, as soft as the stripes' edges are

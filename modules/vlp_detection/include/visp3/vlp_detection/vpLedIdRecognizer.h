@@ -37,6 +37,8 @@ struct VISP_EXPORT vpRowTimeError {
   the frequency is known the worse for it, and strangers fit that would show for what they are elsewhere. So
   the gate on the estimate's error grows no wider than `boundGate` times what edges anywhere leave
   (vpStripeFeatures::frequencyBound), and what is known `maxSpread` times worse than that has no candidate.
+  Where duty and frequency are known together only (vpStripeFeatures::alongDuty), each identifier is compared
+  with what the frequency would be with its duty.
 
   One that has at least `minConfidence` and a single lamp gives the id. What several lamps of one identifier
   leave open, or several candidates, is for geometry to decide: `candidates` hands them on.
@@ -71,6 +73,7 @@ private:
 
   void addCandidate(Sight &sight, const vpLampObservation &lamp, size_t identifier) const;
   Sight sightOf(const vpLampObservation &lamp) const;
+  double reachOf(double frequencySigma, double frequencyBound) const;
   std::vector<double> rowTimeErrors(const std::vector<Sight> &sights) const;
   void decide(vpLampObservation &lamp, const Sight &sight) const;
 
