@@ -150,7 +150,7 @@ void vpVlpFilter::forgetVelocity()
 bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
 {
   static const double chance = 2, beyond = 6; // standard deviations of a chi-square
-  static const double calming = 0.6, rousing = 3;
+  static const double calming = 0.5, rousing = 3;
   const double excess = (chiSquare - degreesOfFreedom) / std::sqrt(2.0 * std::max(1, degreesOfFreedom));
   // One lamp does not show whether the robot turns about it.
   static const double alone = 0.03;
@@ -259,19 +259,21 @@ void vpVlpFilter::update(const vpLampSight &lamp)
 }
 
 /*!
-  What lamps' points scatter by, as a share of what they say: by innovations that are hardly anything else,
-  those of a calm robot whose pose is known better than its lamps are seen (covariance matching, Mehra 1972).
+  What lamps' points scatter by, as a share of what they say: by the innovations of a calm robot, whose pose
+  rests on such points and is as good as they were (covariance matching, Mehra 1972).
 */
 void vpVlpFilter::weighNoise(const vpLampSight &lamp)
 {
-  static const double calm = 0.03, noisy = 0.6; // share of the accelerations; of an innovation's variance
-  static const double gain = 0.02, outlying = 9, least = 0.25, most = 9;
+  static const double calm = 0.03, noisy = 0.3; // share of the accelerations; of an innovation's variance
+  static const double believed = 10; // points, that what the first of them scatter by weighs as much as
+  static const double slowest = 0.02, outlying = 9, least = 0.25, most = 9;
   const Innovation seen = innovation(lamp);
   if (!seen.inFront || m_unrest > calm ||
       m_noise * lamp.covariance.trace() < noisy * seen.covariance.trace()) {
     return;
   }
   const double excess = 0.5 * std::min(seen.distance(0), outlying) - 1;
+  const double gain = std::max(slowest, 1 / (believed + ++m_weighed));
   m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
 }
 

@@ -211,6 +211,7 @@ private:
   double m_tiltDoubt = 0;            // rad, added to what the rig says of roll and pitch
   double m_placeDoubt = 0;           // m, added to what the map says of its lamps
   double m_noise = 1;                // variance of the lamps' points, as a share of the stated one
+  int m_weighed = 0;                 // points that it rests on
   double m_unrest = 1;               // share of the random accelerations
   double m_followed = -1e300;        // s, end of the interval whose odometry the velocity is
 };
