@@ -4,7 +4,6 @@
  */
 // vlp-evaluate, run as a user runs it.
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -12,6 +11,7 @@
 #include <visp3/vlp_core/vpPoseText.h>
 #include <visp3/vlp_evaluation/vpEvaluation.h>
 
+#include "apps/vpExpectRefused.h"
 #include "common/vpMarkup.h"
 #include "common/vpProcess.h"
 
@@ -68,16 +68,8 @@ protected:
   void expectOneLine(const std::vector<std::string> &arguments, int code,
                      const std::vector<std::string> &parts) const
   {
-    SCOPED_TRACE(testing::PrintToString(arguments));
-    vpProcess evaluate("vlp-evaluate", arguments);
-    EXPECT_EQ(evaluate.wait(), code);
-    const std::string line = evaluate.err();
-    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
-    EXPECT_EQ(line.rfind("vlp-evaluate: error: ", 0), 0u) << line;
-    for (const std::string &part : parts) {
-      EXPECT_NE(line.find(part), std::string::npos) << "  line:     " << line << "  expected: " << part;
-    }
-    EXPECT_EQ(evaluate.out(), "");
+    EXPECT_EQ(vpExpectRefused("vlp-evaluate", arguments, code, parts), "")
+        << testing::PrintToString(arguments);
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));
   }
 

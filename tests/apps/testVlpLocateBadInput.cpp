@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/vpExpectRefused.h"
 #include "apps/vpLocateScene.h"
 #include "common/vpProcess.h"
 
@@ -23,18 +24,9 @@ constexpr int badInput = 2, nothingFound = 3;
 //! Runs vlp-locate and expects one line on stderr with all of \e parts, and no stdout but a comment.
 void expectOneLine(const std::vector<std::string> &arguments, int code, const std::vector<std::string> &parts)
 {
-  SCOPED_TRACE(testing::PrintToString(arguments));
-  vpProcess locate("vlp-locate", arguments);
-  EXPECT_EQ(locate.wait(), code);
-  const std::string line = locate.err();
-  EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
-  EXPECT_EQ(line.rfind("vlp-locate: error: ", 0), 0u) << line;
-  for (const std::string &part : parts) {
-    EXPECT_NE(line.find(part), std::string::npos) << "  line:     " << line << "  expected: " << part;
-  }
-  EXPECT_TRUE(locate.out().empty() ||
-              (locate.out()[0] == '#' && locate.out().find('\n') == locate.out().size() - 1))
-      << locate.out();
+  const std::string out = vpExpectRefused("vlp-locate", arguments, code, parts);
+  EXPECT_TRUE(out.empty() || (out[0] == '#' && out.find('\n') == out.size() - 1))
+      << out << testing::PrintToString(arguments);
 }
 
 struct Case {

@@ -12,6 +12,7 @@
 #include <visp3/vlp_core/vpCsvTable.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
+#include "apps/vpExpectRefused.h"
 #include "apps/vpLocateScene.h"
 #include "common/vpProcess.h"
 
@@ -29,16 +30,8 @@ const std::vector<std::string> fixColumns = {"timestamp_s", "x",      "y",      
 //! Runs vlp-locate and expects that it refuses in one line with all of \e parts, and writes nothing.
 void expectRefused(const std::vector<std::string> &arguments, const std::vector<std::string> &parts)
 {
-  SCOPED_TRACE(testing::PrintToString(arguments));
-  vpProcess locate("vlp-locate", arguments);
-  EXPECT_EQ(locate.wait(), badInput);
-  const std::string line = locate.err();
-  EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
-  EXPECT_EQ(line.rfind("vlp-locate: error: ", 0), 0u) << line;
-  for (const std::string &part : parts) {
-    EXPECT_NE(line.find(part), std::string::npos) << "  line:     " << line << "  expected: " << part;
-  }
-  EXPECT_EQ(locate.out(), "");
+  EXPECT_EQ(vpExpectRefused("vlp-locate", arguments, badInput, parts), "")
+      << testing::PrintToString(arguments);
 }
 
 //! A folder with rig, lamps and three pictures: the scene, black, and from elsewhere.

@@ -4,7 +4,6 @@
  */
 // vlp-plan, run as a user runs it.
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -12,6 +11,7 @@
 #include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_detection/vpLedIdPlanner.h>
 
+#include "apps/vpExpectRefused.h"
 #include "common/vpProcess.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
@@ -51,16 +51,7 @@ protected:
   void expectOneLine(const std::vector<std::string> &arguments, int code,
                      const std::vector<std::string> &parts) const
   {
-    SCOPED_TRACE(testing::PrintToString(arguments));
-    vpProcess plan("vlp-plan", arguments);
-    EXPECT_EQ(plan.wait(), code);
-    const std::string line = plan.err();
-    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
-    EXPECT_EQ(line.rfind("vlp-plan: error: ", 0), 0u) << line;
-    for (const std::string &part : parts) {
-      EXPECT_NE(line.find(part), std::string::npos) << "  line:     " << line << "  expected: " << part;
-    }
-    EXPECT_EQ(plan.out(), "");
+    EXPECT_EQ(vpExpectRefused("vlp-plan", arguments, code, parts), "") << testing::PrintToString(arguments);
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));
   }
 

@@ -22,6 +22,7 @@
 #include <visp3/vlp_robot/vpOdometry.h>
 #include <visp3/vlp_sensor/vpPictureSequence.h>
 
+#include "apps/vpExpectRefused.h"
 #include "apps/vpLocateScene.h"
 #include "common/vpProcess.h"
 
@@ -54,16 +55,7 @@ std::string simulate(const std::vector<std::string> &arguments)
 //! Runs a program that should say one line on stderr with all of \e parts and end with bad input.
 void expectOneLine(const std::vector<std::string> &arguments, const std::vector<std::string> &parts)
 {
-  SCOPED_TRACE(testing::PrintToString(arguments));
-  vpProcess program("vlp-simulate", arguments);
-  EXPECT_EQ(program.wait(), 2);
-  const std::string line = program.err();
-  EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
-  EXPECT_EQ(line.rfind("vlp-simulate: error: ", 0), 0u) << line;
-  for (const std::string &part : parts) {
-    EXPECT_NE(line.find(part), std::string::npos) << "  line:     " << line << "  expected: " << part;
-  }
-  EXPECT_EQ(program.out(), "");
+  EXPECT_EQ(vpExpectRefused("vlp-simulate", arguments, 2, parts), "") << testing::PrintToString(arguments);
 }
 
 //! Name and bytes of each file of a folder.

@@ -4,16 +4,14 @@
  */
 // Frame after frame: clocks that jump, robots that are carried away, lamps that are hidden or replaced.
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
 #include "common/vpExpectError.h"
-#include "common/vpLampPicture.h"
+#include "hungLamps.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
@@ -22,84 +20,21 @@ using namespace VISP_NAMESPACE_NAME;
 namespace
 {
 using State = vpVlpFilter::State;
+using hungLamps::Hung;
+using hungLamps::Path;
+using hungLamps::Place;
 
-//! Level camera that looks up, its base in the same place: m, rad.
-struct Place {
-  double x = 0, y = 0, yaw = 0;
-};
-
-struct Hung {
-  std::string id;
-  Eigen::Vector3d position; // m
-  double frequency;         // Hz
-  bool lit = true;
-};
-
-//! Four lamps of 0.16 m, and a robot that drives slowly below them.
+//! Four lamps, and a robot that drives slowly below them.
 struct Room {
-  double px = 400;
-  std::vector<Hung> lamps = {{"A", {-0.5, -0.4, 1.6}, 1800},
-                             {"B", {0.5, -0.4, 1.6}, 2300},
-                             {"C", {0.5, 0.4, 1.6}, 2900},
-                             {"D", {-0.5, 0.4, 1.6}, 3600}};
+  hungLamps::Camera camera = {480, 400, 400};
+  std::vector<Hung> lamps = hungLamps::rectangle(0.5, 0.4);
 
-  vpLampMap map() const
+  vpVlpLocalizer localizer() const { return vpVlpLocalizer(camera.rig(), hungLamps::mapOf(lamps)); }
+
+  vpVlpFrame frame(double time, const Path &path) const
   {
-    vpLampMap map;
-    for (const Hung &hung : lamps) {
-      vpLamp lamp;
-      lamp.id = hung.id;
-      lamp.position = hung.position;
-      lamp.size = 0.16;
-      lamp.modulation.kind = vpModulation::Kind::pwm;
-      lamp.modulation.frequency = hung.frequency;
-      map.lamps.push_back(lamp);
-    }
-    return map;
-  }
-
-  vpVlpRig rig() const
-  {
-    vpVlpRig rig;
-    rig.width = 480;
-    rig.height = 400;
-    rig.camera.initPersProjWithoutDistortion(px, px, 239.5, 199.5);
-    rig.shutter.rowTime = rig.shutter.exposure = 40e-6;
-    rig.shutter.rowTimeSigma = 4e-9;
-    return rig;
-  }
-
-  vpVlpLocalizer localizer() const { return vpVlpLocalizer(rig(), map()); }
-
-  //! Lamps are painted where the robot sees them at the time of the line through their middle.
-  vpVlpFrame frame(double time, const std::function<Place(double)> &path) const
-  {
-    vpLampPicture picture;
-    picture.width = 480;
-    picture.height = 400;
-    picture.rowTime = picture.exposure = 40e-6;
-    picture.blur = 0.7;
-    picture.seed = static_cast<unsigned int>(std::abs(time) * 1000) + 1;
-    for (const Hung &hung : lamps) {
-      if (!hung.lit) {
-        continue;
-      }
-      vpPaintedLamp lamp;
-      lamp.centre.y() = 199.5;
-      for (int round = 0; round < 3; ++round) {
-        const Place at = path(time + 40e-6 * (lamp.centre.y() + 0.5));
-        const double east = hung.position.x() - at.x, north = hung.position.y() - at.y;
-        const double right = std::cos(at.yaw) * east + std::sin(at.yaw) * north;
-        const double down = -std::sin(at.yaw) * east + std::cos(at.yaw) * north;
-        lamp.centre = {239.5 + px * right / hung.position.z(), 199.5 + px * down / hung.position.z()};
-      }
-      lamp.a = lamp.b = 0.08 * px / hung.position.z();
-      lamp.frequency = hung.frequency;
-      lamp.phase = std::fmod(37.7 * time, 1) + 0.1 * hung.frequency / 1000;
-      lamp.pwm(0.5);
-      picture.lamps.push_back(lamp);
-    }
-    return {picture.render(), time, ""};
+    const auto seed = static_cast<unsigned int>(std::abs(time) * 1000) + 1;
+    return camera.frame(lamps, time, path, std::fmod(37.7 * time, 1), seed);
   }
 };
 
@@ -139,8 +74,7 @@ testing::AssertionResult isAt(const vpVlpLocation &location, const Place &place,
 }
 
 //! Drives \e frames frames from \e first on; the last one's location.
-vpVlpLocation run(vpVlpLocalizer &localizer, const Room &room, const std::function<Place(double)> &path,
-                  double first, int frames)
+vpVlpLocation run(vpVlpLocalizer &localizer, const Room &room, const Path &path, double first, int frames)
 {
   vpVlpLocation location;
   for (int k = 0; k < frames; ++k) {

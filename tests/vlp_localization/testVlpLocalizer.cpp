@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
-#include "common/vpLampPicture.h"
+#include "hungLamps.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
@@ -19,70 +19,20 @@ using namespace VISP_NAMESPACE_NAME;
 namespace
 {
 
-//! A level camera that looks up, its base in the same place, under lamps of 0.16 m.
+//! Four lamps, and a robot that stands below them.
 struct Room {
-  struct Hung {
-    std::string id;
-    Eigen::Vector3d position; // m, where it really hangs
-    double frequency;         // Hz, 0: steady
-  };
-
   double x = 0.1, y = -0.05, yaw = 0.6; // m, rad
-  double px = 600;
-  std::vector<Hung> lamps = {{"A", {-0.4, -0.3, 1.6}, 1800},
-                             {"B", {0.4, -0.3, 1.6}, 2300},
-                             {"C", {0.4, 0.3, 1.6}, 2900},
-                             {"D", {-0.4, 0.3, 1.6}, 3600}};
-  vpLampMap map;
+  hungLamps::Camera camera = {640, 480, 600};
+  std::vector<hungLamps::Hung> lamps = hungLamps::rectangle(0.4, 0.3);
+  vpLampMap map = hungLamps::mapOf(lamps);
 
-  Room()
-  {
-    for (const Hung &hung : lamps) {
-      vpLamp lamp;
-      lamp.id = hung.id;
-      lamp.position = hung.position;
-      lamp.size = 0.16;
-      lamp.modulation.kind = vpModulation::Kind::pwm;
-      lamp.modulation.frequency = hung.frequency;
-      map.lamps.push_back(lamp);
-    }
-  }
-
-  vpVlpRig rig() const
-  {
-    vpVlpRig rig;
-    rig.width = 640;
-    rig.height = 480;
-    rig.camera.initPersProjWithoutDistortion(px, px, 319.5, 239.5);
-    rig.shutter.rowTime = rig.shutter.exposure = 40e-6;
-    rig.shutter.rowTimeSigma = 4e-9;
-    return rig;
-  }
+  vpVlpRig rig() const { return camera.rig(); }
 
   vpVlpFrame frame(unsigned int seed = 1) const
   {
-    vpLampPicture picture;
-    picture.rowTime = picture.exposure = 40e-6;
-    picture.blur = 0.7;
-    picture.seed = seed;
-    for (const Hung &hung : lamps) {
-      const double east = hung.position.x() - x, north = hung.position.y() - y;
-      const double right = std::cos(yaw) * east + std::sin(yaw) * north;
-      const double down = -std::sin(yaw) * east + std::cos(yaw) * north;
-      vpPaintedLamp lamp;
-      lamp.centre = {319.5 + px * right / hung.position.z(), 239.5 + px * down / hung.position.z()};
-      lamp.a = lamp.b = 0.08 * px / hung.position.z();
-      lamp.frequency = hung.frequency;
-      lamp.phase = 0.37 * seed + 0.1 * hung.frequency / 1000;
-      if (hung.frequency > 0) {
-        lamp.pwm(0.5);
-      }
-      picture.lamps.push_back(lamp);
-    }
-    vpVlpFrame frame;
-    frame.I = picture.render();
-    frame.timestamp = 12.5;
-    return frame;
+    const hungLamps::Place place = {x, y, yaw};
+    return camera.frame(
+        lamps, 12.5, [&](double) { return place; }, 0.37 * seed, seed);
   }
 
   vpVlpLocation locate(vpVlpLocalizer::Solver solver = vpVlpLocalizer::Solver::all) const
