@@ -12,7 +12,7 @@ out=build/demo
 main_job()
 {
   local bin=build/release/bin
-  "$bin/vlp-simulate" --scenario "$scenario" --every 24 --out "$out/run"
+  "$bin/vlp-simulate" --scenario "$scenario" --every 6 --out "$out/run"
   "$bin/vlp-locate" --run "$out/run" --poses "$out/poses.tum" --fixes "$out/fixes.csv" --seen "$out/seen.csv" \
     --overlay "$out/overlay"
   "$bin/vlp-evaluate" --truth "$out/run/truth.tum" --fixes "$out/fixes.csv" --out "$out/report" \
