@@ -72,7 +72,8 @@ void vpVlpFilter::move(double dt, bool accelerates)
   m_P = F * m_P * F.transpose();
 
   const double t = std::abs(dt);
-  m_P(z, z) += square(m_unrest * drift) * t;
+  static const double least = 0.01; // of the drift: lamps' outlines are not wrong anew in every frame
+  m_P(z, z) += square(std::max(m_unrest, least) * drift) * t;
   if (freeAttitude) {
     m_P(roll, roll) += square(tiltDrift) * t;
     m_P(pitch, pitch) += square(tiltDrift) * t;

@@ -17,6 +17,7 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 const double mostStrain = 8; // standard deviations
+const int young = 3;         // frames since the start: its velocity is not known, or rests on the claims
 const char *const misplaced = "not where the robot's motion has it";
 
 size_t accepted(const vpVlpLocation &location)
@@ -129,7 +130,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
 {
   std::vector<vpLampObservation> all = location.observations;
   const std::vector<size_t> whole = unchanged(location, usable);
-  if (2 * whole.size() < usable.size() && elsewhere(all, usable, location)) {
+  if ((2 * whole.size() < usable.size() && elsewhere(all, usable, location)) ||
+      (m_followed < young && vague(location.timestamp) && beginAnew(location, whole))) {
     return;
   }
   std::vector<vpLampObservation> apart = location.observations;
@@ -233,7 +235,6 @@ double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<s
 bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable,
                                  bool roused)
 {
-  static const int young = 3; // frames since the start: its velocity rests on the claims
   const int often = ++m_followed <= young && !filter.doubtsClaims() ? 1 : 8; // frames
   const auto apart = std::count_if(usable.begin(), usable.end(), [&location](size_t i) {
     return location.observations[i].remark == misplaced;
@@ -280,6 +281,36 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
   fix.wMc = marked.wMc;
   fix.covariance = marked.covariance;
   return fix;
+}
+
+//! Whether the pose is so uncertain by then that rays to lamps are no longer linear in its error.
+bool vpVlpLocalizer::vague(double time) const
+{
+  static const double most = 0.1; // rad, of a lamp's direction
+  vpVlpFilter there = filter;
+  there.advance(time);
+  const vpVlpFix fix = there.now();
+  double height = 1e9; // m, of the lowest lamp
+  for (const vpLamp &lamp : m_map.lamps) {
+    height = std::min(height, lamp.position.z() - fix.wMc[2][3]);
+  }
+  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
+               turn = std::sqrt(fix.covariance(5, 5));
+  return turn + place / std::max(height, 0.1) > most;
+}
+
+//! From where the lamps of this frame alone say that the robot is, if they say so.
+bool vpVlpLocalizer::beginAnew(vpVlpLocation &location, const std::vector<size_t> &usable)
+{
+  std::vector<vpLampObservation> apart = location.observations;
+  const vpVlpFix alone = solve(apart, usable);
+  if (!alone.valid || alone.ambiguous || !asBefore(apart, alone)) {
+    return false;
+  }
+  location.observations = apart;
+  location.fix = alone;
+  begin(location);
+  return true;
 }
 
 /*!

@@ -88,6 +88,8 @@ private:
 
   vpVlpFix solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const;
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
+  bool vague(double time) const;
+  bool beginAnew(vpVlpLocation &location, const std::vector<size_t> &usable);
   bool correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
   vpVlpFix correct(vpVlpLocation &location, const std::vector<size_t> &usable);
   double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
