@@ -85,24 +85,12 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   correct(first, members);
   filter.startAgain();
   m_trust->forgetPlaces();
-  addMotionDoubt(location, members);
-  correct(second, members);
-}
-
-//! What a single frame's pose is off by where the robot moved between its time stamp and the lamps' lines.
-void vpVlpLocalizer::addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const
-{
-  double since = 0; // s
-  for (size_t i : members) {
-    since += (timeOf(location, location.observations[i]) - location.timestamp) /
-             static_cast<double>(members.size());
+  const vpVlpFix fix = correct(second, members);
+  if (fix.valid) { // at the time stamp, by a robot that may have moved until its lamps' lines
+    location.fix.wMb = fix.wMb;
+    location.fix.wMc = fix.wMc;
+    location.fix.covariance = fix.covariance;
   }
-  const Eigen::Matrix3d doubt =
-      since * since * (filter.velocityCovariance() + filter.velocity() * filter.velocity().transpose());
-  for (int i : {0, 1}) {
-    location.fix.covariance(i, i) += std::max(doubt(0, 0), doubt(1, 1)); // whatever its heading
-  }
-  location.fix.covariance(5, 5) += doubt(2, 2);
 }
 
 //! With the velocity that the last pose tells, where there is one that the robot can have come from.

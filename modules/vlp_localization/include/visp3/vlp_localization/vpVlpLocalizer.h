@@ -97,7 +97,6 @@ private:
   static std::vector<size_t> inTime(const vpVlpLocation &location, std::vector<size_t> which);
   void begin(vpVlpLocation &location);
   void startAt(const vpVlpLocation &location);
-  void addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const;
   bool inOrder(double time);
   const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
   std::vector<vpRect> expectedWindows(double time) const;
