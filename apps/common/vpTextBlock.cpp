@@ -14,20 +14,8 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double fontScale = 0.42; // of a unit
 
-std::vector<std::string> wrapped(const std::string &text, size_t columns)
-{
-  std::vector<std::string> lines;
-  std::string rest = text;
-  while (rest.size() > columns) {
-    const size_t blank = rest.rfind(' ', columns);
-    const bool cut = blank == std::string::npos || blank == 0; // one long word
-    lines.push_back(rest.substr(0, cut ? columns : blank));
-    rest.erase(0, cut ? columns : blank + 1);
-  }
-  lines.push_back(rest);
-  return lines;
-}
 //! The first of the cheapest places.
 template <typename Cost>
 cv::Rect cheapest(const std::vector<cv::Rect> &places, const Cost &cost)
@@ -45,12 +33,43 @@ cv::Rect cheapest(const std::vector<cv::Rect> &places, const Cost &cost)
 }
 } // namespace
 
+int vpTextThickness(double unit)
+{
+  return unit < 1.8 ? 1 : 2;
+}
+
+cv::Size vpTextSize(const std::string &text, double unit)
+{
+  int descent = 0;
+  return cv::getTextSize(text, font, fontScale * unit, vpTextThickness(unit), &descent);
+}
+
+void vpDrawText(cv::Mat &picture, const std::string &text, const cv::Point &baseLeft, double unit,
+                const cv::Scalar &colour)
+{
+  cv::putText(picture, text, baseLeft, font, fontScale * unit, colour, vpTextThickness(unit), cv::LINE_AA);
+}
+
+std::vector<std::string> vpWrapped(const std::string &text, size_t columns)
+{
+  std::vector<std::string> lines;
+  std::string rest = text;
+  while (rest.size() > columns) {
+    const size_t blank = rest.rfind(' ', columns);
+    const bool cut = blank == std::string::npos || blank == 0; // one long word
+    lines.push_back(rest.substr(0, cut ? columns : blank));
+    rest.erase(0, cut ? columns : blank + 1);
+  }
+  lines.push_back(rest);
+  return lines;
+}
+
 vpTextBlock::vpTextBlock(const std::string &heading, const std::vector<std::string> &lines,
                          const cv::Scalar &colour, double unit, size_t columns)
     : m_colour(colour), m_margin(cvRound(4 * unit))
 {
-  const double scale = 0.42 * unit;
-  const int thickness = unit < 1.8 ? 1 : 2;
+  const double scale = fontScale * unit;
+  const int thickness = vpTextThickness(unit);
   int width = 0, height = 0;
   const auto add = [&](const std::string &text, double textScale, int textThickness) {
     int descent = 0;
@@ -63,7 +82,7 @@ vpTextBlock::vpTextBlock(const std::string &heading, const std::vector<std::stri
     add(heading, 1.5 * scale, thickness + 1);
   }
   for (const std::string &line : lines) {
-    for (const std::string &piece : wrapped(line, columns)) {
+    for (const std::string &piece : vpWrapped(line, columns)) {
       add(piece, scale, thickness);
     }
   }
@@ -123,14 +142,6 @@ cv::Rect vpTextLayout::beside(const cv::Rect &box, cv::Size text, int gap, const
     return 10 * covered(place) +
            (std::hypot(across, along) - 0.3 * cv::norm(middle(place) - crowd)) / diagonal;
   });
-}
-
-cv::Rect vpTextLayout::corner(cv::Size text, int gap) const
-{
-  const int right = m_picture.width - text.width - gap, low = m_picture.height - text.height - gap;
-  return cheapest({inside({gap, gap}, text), inside({right, gap}, text), inside({gap, low}, text),
-                   inside({right, low}, text)},
-                  [this](const cv::Rect &place) { return covered(place); });
 }
 
 END_VISP_NAMESPACE

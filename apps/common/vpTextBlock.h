@@ -5,6 +5,9 @@
 #ifndef vpTextBlock_h
 #define vpTextBlock_h
 
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -12,6 +15,34 @@
 #include <visp3/vlp_core/vpVlpNamespace.h>
 
 BEGIN_VISP_NAMESPACE
+
+//! Numbers and words as std::printf writes them, up to 200 letters.
+template <typename... Values>
+std::string vpFormat(const char *format, Values... values)
+{
+  std::array<char, 200> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, values...);
+  return buffer.data();
+}
+
+//! To 1/steps; no -0.
+inline double vpRounded(double value, double steps)
+{
+  return std::round(value * steps) / steps + 0.0;
+}
+
+//! One line of text, its letters on \e baseLeft. \param unit Its size; 1 suits a picture of 800 pixels.
+void vpDrawText(cv::Mat &picture, const std::string &text, const cv::Point &baseLeft, double unit,
+                const cv::Scalar &colour);
+
+//! Of that, without what hangs below the letters' base.
+cv::Size vpTextSize(const std::string &text, double unit);
+
+//! px, of its strokes.
+int vpTextThickness(double unit);
+
+//! \e text in lines of no more letters than \e columns, cut between words where there are blanks.
+std::vector<std::string> vpWrapped(const std::string &text, size_t columns);
 
 //! A heading and a few lines of text on a dark ground, to be drawn into a colour picture.
 class vpTextBlock
@@ -55,9 +86,6 @@ public:
   //! A free place near \e box, inside the picture: \e gap pixels beside it, away from \e crowd, where there
   //! is room.
   cv::Rect beside(const cv::Rect &box, cv::Size text, int gap, const cv::Point2d &crowd) const;
-
-  //! The freest corner of the picture, the upper left one if that is as good as any.
-  cv::Rect corner(cv::Size text, int gap) const;
 
   //! How much \e text would cover: the sum over what to avoid of the share that it hides, or of its own share
   //! where that is larger. 0: nothing.

@@ -7,19 +7,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <tuple>
 
 #include <opencv2/imgproc.hpp>
-#include <visp3/vlp_core/vpPoseText.h>
 
 #include "common/vpTextBlock.h"
+#include "common/vpVlpColours.h"
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const cv::Scalar green(90, 230, 60), yellow(0, 225, 255), orange(100, 165, 225), white(240, 240, 240); // BGR
 constexpr int subPixel = 4;         // bits that OpenCV's drawing takes as the fraction of a coordinate
 constexpr size_t mostLabels = 40;   // more would hide the picture
 constexpr double farthest = 100000; // px; OpenCV's drawing overflows at a multiple of it
@@ -86,25 +84,6 @@ double wholeScale(cv::Size frame)
                         : (longest < least ? (least + longest - 1) / longest : 1);
 }
 
-template <typename... Values>
-std::string text(const char *format, Values... values)
-{
-  std::array<char, 200> buffer;
-  std::snprintf(buffer.data(), buffer.size(), format, values...);
-  return buffer.data();
-}
-
-//! To 1/steps; no -0.
-double rounded(double value, double steps)
-{
-  return std::round(value * steps) / steps + 0.0;
-}
-
-cv::Scalar colourOf(const vpLampObservation &lamp)
-{
-  return lamp.accepted ? green : (lamp.id.empty() ? orange : yellow);
-}
-
 void drawLines(View &view, const std::vector<Eigen::Vector2d> &points, bool closed, const cv::Scalar &colour,
                int thickness)
 {
@@ -137,12 +116,12 @@ std::vector<Eigen::Vector2d> pointsOf(const vpLampOutline &outline)
 void drawRegion(View &view, const vpLampObservation &lamp)
 {
   const int thickness = std::max(1, cvRound(1.2 * view.unit));
-  drawLines(view, pointsOf(lamp.outline), true, colourOf(lamp), thickness);
+  drawLines(view, pointsOf(lamp.outline), true, vpVlpColours::ofLamp(lamp), thickness);
 
   const double arm = std::min(7 * view.unit / view.scale, 0.2 * lamp.outline.diameter());
   const Eigen::Vector2d across(arm, 0), along(0, arm);
   for (const bool edge : {true, false}) { // a dark edge: the cross lies on bright stripes
-    const cv::Scalar colour = edge ? cv::Scalar(0, 0, 0) : colourOf(lamp);
+    const cv::Scalar colour = edge ? cv::Scalar(0, 0, 0) : vpVlpColours::ofLamp(lamp);
     const int width = edge ? thickness + 2 : thickness;
     drawLines(view, {lamp.point - across, lamp.point + across}, false, colour, width);
     drawLines(view, {lamp.point - along, lamp.point + along}, false, colour, width);
@@ -157,46 +136,26 @@ std::vector<std::string> signalText(const vpStripeFeatures &features)
   if (features.signal == vpStripeFeatures::Signal::coded) { // frequency and duty say nothing of it
     return {"coded"};
   }
-  std::vector<std::string> lines = {text("%.1f +/- %.1f Hz", features.frequency, features.frequencySigma)};
+  std::vector<std::string> lines = {
+      vpFormat("%.1f +/- %.1f Hz", features.frequency, features.frequencySigma)};
   if (std::isfinite(features.duty)) {
-    lines.push_back(text("duty %.3f +/- %.3f", features.duty, features.dutySigma));
+    lines.push_back(vpFormat("duty %.3f +/- %.3f", features.duty, features.dutySigma));
   }
   return lines;
 }
 
-//! \e said: what stands in the picture's corner already.
+//! \e said: what stands beside the picture already.
 vpTextBlock labelOf(const vpLampObservation &lamp, const std::string &said, double unit)
 {
   std::vector<std::string> lines = signalText(lamp.features);
   if (!lamp.remark.empty() && lamp.remark.rfind(lines[0], 0) == 0) { // the remark says it, and more
     lines.clear();
   }
-  lines.push_back(text("confidence %.3f", lamp.confidence));
+  lines.push_back(vpFormat("confidence %.3f", lamp.confidence));
   if (!lamp.remark.empty() && lamp.remark != said) {
     lines.push_back(lamp.remark);
   }
-  return vpTextBlock(lamp.id.empty() ? "?" : lamp.id.substr(0, 40), lines, colourOf(lamp), unit);
-}
-
-vpTextBlock poseBlock(const vpVlpFix &fix, double unit)
-{
-  constexpr size_t columns = 50;
-  if (!fix.valid) {
-    return vpTextBlock("no position", {fix.refusal}, yellow, unit, columns);
-  }
-  const auto sigma = [&fix](int i) { return std::sqrt(fix.covariance(i, i)); };
-  const double degree = M_PI / 180;
-  std::vector<std::string> lines;
-  for (unsigned int i = 0; i < 3; ++i) {
-    lines.push_back(text("%c  %.4f m +/- %.2f mm", "xyz"[i], rounded(fix.wMb[i][3], 1e4),
-                         1000 * sigma(static_cast<int>(i))));
-  }
-  lines.push_back(
-      text("yaw  %.3f +/- %.3f deg", rounded(vpRollPitchYaw(fix.wMb).z() / degree, 1e3), sigma(5) / degree));
-  if (fix.ambiguous) {
-    lines.push_back("ambiguous: a second pose fits as well");
-  }
-  return vpTextBlock("", lines, fix.ambiguous ? yellow : white, unit, columns);
+  return vpTextBlock(lamp.id.empty() ? "?" : lamp.id.substr(0, 40), lines, vpVlpColours::ofLamp(lamp), unit);
 }
 
 //! Where an outline is in the view; empty where it is nowhere.
@@ -209,6 +168,22 @@ cv::Rect boxOf(const View &view, const vpLampOutline &outline)
   return drawn ? cv::Rect(cv::Point(cvFloor(first.x()), cvFloor(first.y())),
                           cv::Point(cvCeil(last.x()) + 1, cvCeil(last.y()) + 1))
                : cv::Rect();
+}
+
+//! Where lamps were looked for; behind the lamps themselves.
+void drawWindows(View &view, const vpVlpLocation &location)
+{
+  const cv::Mat before = view.picture.clone();
+  for (const vpRect &window : location.searched) {
+    const double left = std::max(-1.0, window.getLeft()), top = std::max(-1.0, window.getTop());
+    const double right = window.getLeft() + window.getWidth() - 1,
+                 low = window.getTop() + window.getHeight() - 1;
+    drawLines(view, {{left, top}, {right, top}, {right, low}, {left, low}}, true, vpVlpColours::blue, 1);
+  }
+  for (const vpLampObservation &lamp : location.observations) {
+    const cv::Rect box = boxOf(view, lamp.outline) & cv::Rect(cv::Point(), before.size());
+    before(box).copyTo(view.picture(box));
+  }
 }
 
 cv::Point2d middleOf(const cv::Rect &box)
@@ -334,11 +309,9 @@ cv::Mat vpDrawVlpOverlay(const vpImage<unsigned char> &I, const vpVlpLocation &l
   for (const vpLampObservation &lamp : location.observations) {
     layout.avoid(boxOf(view, lamp.outline));
   }
-  const vpTextBlock pose = poseBlock(location.fix, view.unit);
-  const cv::Rect corner = layout.corner(pose.size(), cvRound(6 * view.unit));
-  layout.avoid(corner);
   const std::vector<Label> labels = labelsOf(location, grey, view, brighter, layout);
 
+  drawWindows(view, location);
   for (const vpLampObservation &lamp : location.observations) {
     drawRegion(view, lamp);
   }
@@ -348,7 +321,6 @@ cv::Mat vpDrawVlpOverlay(const vpImage<unsigned char> &I, const vpVlpLocation &l
   for (const Label &label : labels) {
     drawLabel(view.picture, label);
   }
-  pose.draw(view.picture, corner.tl());
   return view.picture;
 }
 

@@ -12,11 +12,11 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  A picture by which a person checks at a glance what was made of a frame: the frame in grey, brightened; each
-  lamp-like region's outline in green where it counts for the position, yellow where its lamp is known and
-  does not count, orange where it is no lamp of the map; a cross at the lamp's image point; beside it id,
-  confidence, frequency and duty with their standard deviations, and the remark; in a corner the pose, or why
-  there is none.
+  A picture by which a person checks at a glance what was made of a frame: the frame in grey, brightened;
+  blue, the windows in which lamps were looked for, if not in all of it; each lamp-like region's outline in
+  green where it counts for the position, yellow where its lamp is known and does not count, orange where it
+  is no lamp of the map; a cross at the lamp's image point; beside it id, confidence, frequency and duty with
+  their standard deviations, and the remark.
 
   \return BGR, between 800 and 1600 pixels on the longer side: small frames are enlarged by a whole number,
   large ones made smaller.

@@ -29,6 +29,13 @@ int connectionLost(Display *)
 {
   std::_Exit(whenClosed());
 }
+
+std::string noServer()
+{
+  const char *const name = std::getenv("DISPLAY");
+  return name == nullptr || *name == '\0' ? "the environment variable DISPLAY is not set"
+                                          : std::string("no X11 display ") + name;
+}
 } // namespace
 
 struct vpVlpWindow::Impl {
@@ -51,16 +58,21 @@ struct vpVlpWindow::Impl {
   }
 };
 
+std::string vpVlpWindow::missing()
+{
+  Display *const probe = XOpenDisplay(nullptr);
+  if (probe == nullptr) {
+    return noServer();
+  }
+  XCloseDisplay(probe);
+  return "";
+}
+
 vpVlpWindow::vpVlpWindow(std::function<int()> closed) : m_impl(std::make_unique<Impl>())
 {
   m_impl->probe = XOpenDisplay(nullptr); // vpDisplayX would print lines of its own
   if (m_impl->probe == nullptr) {
-    const char *const name = std::getenv("DISPLAY");
-    throw vpException(
-        vpException::ioError,
-        name == nullptr || *name == '\0'
-            ? std::string("display: the environment variable DISPLAY is not set, expected an X11 display")
-            : std::string("display: no X11 display ") + name);
+    throw vpException(vpException::ioError, "display: " + noServer());
   }
   whenClosed = std::move(closed);
   XSetIOErrorHandler(connectionLost);
@@ -97,9 +109,14 @@ BEGIN_VISP_NAMESPACE
 struct vpVlpWindow::Impl {
 };
 
+std::string vpVlpWindow::missing()
+{
+  return "this ViSP was built without X11";
+}
+
 vpVlpWindow::vpVlpWindow(std::function<int()>)
 {
-  throw vpException(vpException::notImplementedError, "display: this ViSP was built without X11");
+  throw vpException(vpException::notImplementedError, "display: " + missing());
 }
 
 vpVlpWindow::~vpVlpWindow() = default;

@@ -18,6 +18,9 @@ BEGIN_VISP_NAMESPACE
 class vpVlpWindow
 {
 public:
+  //! Why no window can be shown here, in one line; empty where one can.
+  static std::string missing();
+
   /*!
     \param closed What the user's closing the window brings about: X11 ends the program then, with the exit
     code that this function returns. It must not touch the window. \throw vpException where there is no

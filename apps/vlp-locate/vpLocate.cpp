@@ -33,10 +33,10 @@ class Locate
 {
 public:
   explicit Locate(const vpLocateOptions &options)
-      : m_options(options), m_rig(vpVlpRig::load(options.rigFile)),
-        m_localizer(options.localizer(m_rig, vpLampMap::load(options.lampsFile))),
+      : m_options(options), m_rig(vpVlpRig::load(options.rigFile)), m_map(vpLampMap::load(options.lampsFile)),
+        m_localizer(options.localizer(m_rig, m_map)),
         m_odometry(options.odometry.empty() ? std::vector<vpOdometry>() : vpReadOdometry(options.odometry)),
-        m_source(options.openFrames()), m_outputs(options, [this] { return windowClosed(); })
+        m_source(options.openFrames()), m_outputs(options, m_map, [this] { return windowClosed(); })
   {
   }
 
@@ -149,6 +149,7 @@ private:
 
   vpLocateOptions m_options;
   vpVlpRig m_rig;
+  vpLampMap m_map;
   vpVlpLocalizer m_localizer;
   std::vector<vpOdometry> m_odometry;
   size_t m_odometryUsed = 0;
@@ -160,8 +161,16 @@ private:
 };
 } // namespace
 
-vpExitCode vpLocate(const vpLocateOptions &options)
+vpExitCode vpLocate(const vpLocateOptions &asked)
 {
+  vpLocateOptions options = asked;
+  if (options.display) {
+    const std::string missing = vpVlpWindow::missing();
+    if (!missing.empty()) {
+      spdlog::warn("--display: {}; going on without the window", vpOneLine(missing));
+      options.display = false;
+    }
+  }
   return Locate(options).run();
 }
 

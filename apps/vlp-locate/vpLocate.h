@@ -12,8 +12,8 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   The program itself: reads the frames, locates the robot in each and writes what was asked for. A frame that
-  cannot be used is one line on stderr and the rest goes on. \throw vpException where the work cannot start,
-  or not be written.
+  cannot be used is one line on stderr and the rest goes on; so is a window where there is no screen.
+  \throw vpException where the work cannot start, or not be written.
 */
 vpExitCode vpLocate(const vpLocateOptions &options);
 

@@ -46,7 +46,9 @@ Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
            it is no lamp of the map; accepted is 1 where it counts for the position. symbols: the chips of
            a lamp that sends a word, 1 lit, from the rotation that is the greatest as text; else empty.
   overlay  a picture for each frame: outlines green where the lamp counts for the position, yellow where it
-           is known and does not, orange where it is no lamp of the map; the pose in a corner.
+           is known and does not, orange where it is no lamp of the map, with the reason; blue, the windows
+           in which lamps were looked for, if not in all of the picture. Beside it state, time, pose, and
+           the map from above: its lamps, the robot with the ellipse of 3 sigma, its trail, grid in metres.
 Pictures without times (--images, --image) get their index, 0 1 2 ..., as their time.
 Files appear whole, at the end. Ctrl-C ends the work and keeps what was done so far.
 
@@ -109,8 +111,10 @@ bool vpLocateOptions::parse(int argc, char **argv)
   vpAddName(app, "--poses", poses, "FILE", "write the poses as a TUM trajectory");
   vpAddName(app, "--fixes", fixes, "FILE", "write the poses with their doubt as CSV");
   vpAddName(app, "--seen", seen, "FILE", "write what was seen in each frame as CSV");
-  vpAddName(app, "--overlay", overlay, "DIR", "write a picture of each frame with what was seen");
-  app.add_flag("--display", display, "show the same in a window; a click there ends the program");
+  vpAddName(app, "--overlay", overlay, "DIR",
+            "write a picture of each frame with what was seen, and the map");
+  app.add_flag("--display", display,
+               "show the same live in a window until a click there; without a screen: says so and goes on");
   if (!vpParseCommandLine(app, argc, argv)) {
     return false;
   }

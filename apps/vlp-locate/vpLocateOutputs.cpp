@@ -17,7 +17,7 @@
 #include <visp3/vlp_evaluation/vpFixLog.h>
 
 #include "common/vpPictureFile.h"
-#include "common/vpVlpOverlay.h"
+#include "common/vpVlpColours.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -73,20 +73,6 @@ std::string overlayName(const vpLocatedFrame &located)
          fs::path(located.frame.name).stem().string().substr(0, longest) + ".png";
 }
 
-std::string stateOf(const vpVlpLocation &location)
-{
-  if (!location.fix.valid) {
-    return "none";
-  }
-  if (location.fix.ambiguous) {
-    return "ambiguous";
-  }
-  if (!location.tracked) {
-    return "fix";
-  }
-  return location.state == vpVlpFilter::State::tracking ? "tracking" : "coasting";
-}
-
 //! TUM has no place for a second pose: where one explains the frame as well, the reader gets none.
 bool isSure(const vpVlpFix &fix)
 {
@@ -94,10 +80,11 @@ bool isSure(const vpVlpFix &fix)
 }
 } // namespace
 
-vpLocateOutputs::vpLocateOutputs(const vpLocateOptions &options, std::function<int()> closed)
+vpLocateOutputs::vpLocateOutputs(const vpLocateOptions &options, const vpLampMap &map,
+                                 std::function<int()> closed)
     : m_posesToStdout(options.posesToStdout()), m_overlay(options.overlay),
       m_poses(open(options.poses, vpTumHeader)), m_fixes(open(options.fixes, listed(vpFixLog::columns()))),
-      m_seen(open(options.seen, seenHeader))
+      m_seen(open(options.seen, seenHeader)), m_dashboard(map)
 {
   if (options.display) {
     m_window = std::make_unique<vpVlpWindow>(std::move(closed));
@@ -165,7 +152,7 @@ void vpLocateOutputs::writeFix(const vpLocatedFrame &located)
       fields[12] += (fields[12].empty() ? "" : ";") + id;
     }
   }
-  fields[13] = stateOf(located.location);
+  fields[13] = vpStateOf(located.location);
   fields[14] = vpNumberText(located.compute);
   m_fixes->stream() << listed(fields) << "\n";
 }
@@ -183,7 +170,7 @@ void vpLocateOutputs::writeSeen(const vpLocatedFrame &located)
 
 void vpLocateOutputs::draw(const vpLocatedFrame &located)
 {
-  const cv::Mat picture = vpDrawVlpOverlay(located.frame.I, located.location);
+  const cv::Mat picture = m_dashboard.draw(located.frame.I, located.location, located.compute);
   if (!m_overlay.empty()) {
     vpWritePicture((fs::path(m_overlay) / overlayName(located)).string(), picture);
   }

@@ -9,6 +9,7 @@
 
 #include <visp3/vlp_core/vpAtomicFile.h>
 
+#include "common/vpVlpDashboard.h"
 #include "common/vpVlpWindow.h"
 #include "vpLocateOptions.h"
 
@@ -30,7 +31,7 @@ public:
     \param closed As of vpVlpWindow. \throw vpException where one of them cannot be written: before any work
     is done.
   */
-  vpLocateOutputs(const vpLocateOptions &options, std::function<int()> closed);
+  vpLocateOutputs(const vpLocateOptions &options, const vpLampMap &map, std::function<int()> closed);
 
   void write(const vpLocatedFrame &located);
 
@@ -51,6 +52,7 @@ private:
   std::unique_ptr<vpAtomicFile> m_poses;
   std::unique_ptr<vpAtomicFile> m_fixes;
   std::unique_ptr<vpAtomicFile> m_seen;
+  vpVlpDashboard m_dashboard;
   std::unique_ptr<vpVlpWindow> m_window;
 };
 

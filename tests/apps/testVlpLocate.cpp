@@ -270,16 +270,17 @@ TEST(VlpLocate, OverlayIsAColourPictureOfEachFrame)
   const std::string first = folder.write("one/a.png", bytes), second = folder.write("two/a.png", bytes);
   EXPECT_EQ(stdoutOf(with(rig, {"--image", first, second, "--overlay", folder / "deep/overlay"})), "");
   for (const std::string name : {"000000-a.png", "000001-a.png"}) { // one name, two pictures
-    const cv::Mat overlay = cv::imread(folder / "deep/overlay/" + name, cv::IMREAD_UNCHANGED);
-    ASSERT_FALSE(overlay.empty()) << name;
-    EXPECT_EQ(overlay.size(), cv::Size(1280, 960));
-    EXPECT_EQ(overlay.type(), CV_8UC3);
+    const cv::Mat whole = cv::imread(folder / "deep/overlay/" + name, cv::IMREAD_UNCHANGED);
+    ASSERT_FALSE(whole.empty()) << name;
+    EXPECT_EQ(whole.size(), cv::Size(1280 + 640, 960)); // the frame, and beside it pose and map
+    EXPECT_EQ(whole.type(), CV_8UC3);
+    const cv::Mat overlay = whole(cv::Rect(0, 0, 1280, 960));
     double brightest = 0;
     cv::Mat blue;
     cv::extractChannel(overlay, blue, 0);
     cv::minMaxLoc(blue, nullptr, &brightest);
     EXPECT_GT(brightest,
-              200); // brightened: the lamps themselves, since all drawing but the pose is without blue
+              200); // brightened: the lamps themselves, since all drawing is without blue
     cv::Mat green;
     cv::inRange(overlay, cv::Scalar(60, 200, 30), cv::Scalar(120, 255, 90), green);
     EXPECT_GT(cv::countNonZero(green), 500);

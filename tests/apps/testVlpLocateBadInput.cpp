@@ -246,14 +246,3 @@ TEST(VlpLocateBadInput, BadUsage)
   expectOneLine(with(rig, {"--image"}), badInput, {"--image"});
   expectOneLine(with(rig, {"--image", "two\nlines.png"}), badInput, {"two\\x0alines.png"});
 }
-
-TEST(VlpLocateBadInput, DisplayWithoutAScreenIsAnError)
-{
-  const vpTemporaryFolder folder;
-  const auto rig = vpLocateScene::writeRig(folder);
-  const std::string picture = folder.write("a.png", encoded(".png", vpLocateScene::picture()));
-  setenv("DISPLAY", ":987", 1);
-  expectOneLine(with(rig, {"--image", picture, "--display"}), badInput, {"display", ":987"});
-  unsetenv("DISPLAY");
-  expectOneLine(with(rig, {"--image", picture, "--display"}), badInput, {"DISPLAY is not set"});
-}

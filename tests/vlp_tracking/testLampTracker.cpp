@@ -286,12 +286,17 @@ TEST(LampTracker, ExpectedWindowsSaveTheSearch)
   for (int k = 0; k < 3; ++k) {
     tracker.track(scene.frame(k, lamps));
   }
+  EXPECT_EQ(tracker.searched().size(), 3u); // two lamps and a strip
   lamps.push_back({300, 200, 2600});
   EXPECT_EQ(scene.seen(tracker.track(scene.frame(3, lamps)), lamps[2]), nullptr);
   const std::vector<vpLampObservation> all = tracker.track(scene.frame(4, lamps), {vpRect(290, 190, 20, 20)});
   const vpLampObservation *seen = scene.seen(all, lamps[2]);
   ASSERT_NE(seen, nullptr);
   EXPECT_EQ(seen->id, "L2600");
+  EXPECT_EQ(tracker.searched().size(), 4u);
+  tracker.track(scene.frame(5, {}));
+  tracker.track(scene.frame(6, {})); // nothing was in sight: all of the picture is searched
+  EXPECT_TRUE(tracker.searched().empty());
 }
 
 TEST(LampTracker, StillPicturesGiveWhatTheWholeFrameGives)

@@ -42,6 +42,7 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
   // Sections 2.1.1 and 2.1.2: LED-ROI, outline, stripe features and LED-ID of every lamp-like region, in the
   // windows of the lamps that are followed and where new ones are searched for.
   location.observations = look(frame);
+  location.searched = tracking ? tracker.searched() : std::vector<vpRect>();
 
   // Lamps whose place in the picture can be relied on, and whose id can, once places have told apart what
   // stripes do not: lamps that share an identifier, a lamp and its reflection.

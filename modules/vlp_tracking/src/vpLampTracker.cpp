@@ -80,6 +80,7 @@ size_t vpLampTracker::tracks() const
 void vpLampTracker::reset()
 {
   m_tracks.clear();
+  m_searched.clear();
   m_inSight = 0;
   m_any = false;
 }
@@ -94,11 +95,12 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   }
   detector.check(frame.I);
   // Windows from the target trackers, a strip in search of new lamps, or all of the picture.
+  m_searched = windows(frame, expected);
   if (m_inSight < needed) {
-    windows(frame, expected);
+    m_searched.clear();
     detector.detect(frame.I);
   } else {
-    detector.detect(frame.I, windows(frame, expected));
+    detector.detect(frame.I, m_searched);
   }
   m_observations = detector.observations();
 

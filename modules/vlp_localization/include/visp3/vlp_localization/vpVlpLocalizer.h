@@ -30,6 +30,7 @@ struct VISP_EXPORT vpVlpLocation {
   bool tracked = false; // the filter's, not of this frame alone
   vpVlpFilter::State state = vpVlpFilter::State::starting; // of fix, by its covariance
   std::vector<vpLampObservation> observations; // every lamp-like region, accepted where it counts for the fix
+  std::vector<vpRect> searched; // px, the windows in which they were looked for; empty: the whole picture
 };
 
 /*!

@@ -65,6 +65,10 @@ public:
   //! Lamps that are followed, seen in the last frame or not.
   size_t tracks() const;
 
+  //! Where lamps were looked for in the last frame, px: around each that is followed, where they were
+  //! expected, and the strip whose turn it was. Windows may reach out of the picture. Empty: in all of it.
+  const std::vector<vpRect> &searched() const { return m_searched; }
+
 private:
   struct Track;
 
@@ -78,6 +82,7 @@ private:
 
   vpVlpRig m_rig;
   std::vector<Track> m_tracks;
+  std::vector<vpRect> m_searched;
   std::vector<vpLampObservation> m_observations;
   std::vector<int> m_trackOf; // of each observation, -1: none
   unsigned int m_born = 0;    // lamps in all
