@@ -27,47 +27,11 @@ size_t accepted(const vpVlpLocation &location)
 }
 } // namespace
 
-//! Where the picture shows the map's lamps, by the pose that the filter expects.
-std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
-{
-  std::vector<vpRect> windows;
-  if (!filter.started()) {
-    return windows;
-  }
-  static const double farthest = 3;   // heights of a lamp above the camera
-  static const double doubtful = 0.1; // rad: the lamps are then anywhere
-  const vpVlpFix fix = filter.fixAt(time + m_halfReadout);
-  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
-               turn = std::sqrt(fix.covariance(5, 5));
-  for (const vpLamp &lamp : m_map.lamps) {
-    const double height = lamp.position.z() - fix.wMc[2][3],
-                 apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
-    if (!(height > 0 && apart < farthest * height && turn + place / height < doubtful)) {
-      continue;
-    }
-    Eigen::Vector2d middle;
-    const Eigen::Vector2d extent = vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
-    if (!vpLampTrust::pixelOf(lamp.position, fix.wMc.inverse(), m_rig, middle)) {
-      continue;
-    }
-    static const double sigmas = 3, around = 0.7; // of the extent, on each side
-    const double doubt = sigmas * m_rig.camera.get_px() * (place + turn * apart) / height;
-    const Eigen::Vector2d half =
-        (std::isfinite(lamp.size) ? 0.5 + around : 0.2) * extent + Eigen::Vector2d(doubt, doubt);
-    const Eigen::Vector2d least = (middle - half).cwiseMax(0.0),
-                          most = (middle + half).cwiseMin(Eigen::Vector2d(m_rig.width - 1, m_rig.height - 1));
-    if ((least.array() < most.array()).all()) {
-      windows.emplace_back(least.x(), least.y(), most.x() - least.x(), most.y() - least.y());
-    }
-  }
-  return windows;
-}
-
 //! Starts the filter at the location's pose, with the lamps that it rests on.
 void vpVlpLocalizer::begin(vpVlpLocation &location)
 {
   filter.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
-  startAt(location);
+  bool moving = startAt(location);
   m_trust->forgetPlaces();
   m_trust->mapTolerance = mapTolerance;
   m_disagreements = m_contradictions = m_followed = 0;
@@ -79,34 +43,54 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   }
   if (strain(location, members) > mostStrain) {
     filter.doubtClaims();
-    startAt(location);
+    moving = startAt(location);
   }
   vpVlpLocation first = location, second = location;
   correct(first, members);
   filter.startAgain();
   m_trust->forgetPlaces();
+  addMotionDoubt(location, members);
   const vpVlpFix fix = correct(second, members);
-  if (fix.valid) { // at the time stamp, by a robot that may have moved until its lamps' lines
+  // One frame alone hardly tells a robot that moves from lamps that hang a little elsewhere.
+  if (moving && fix.valid) {
     location.fix.wMb = fix.wMb;
     location.fix.wMc = fix.wMc;
     location.fix.covariance = fix.covariance;
   }
 }
 
-//! With the velocity that the last pose tells, where there is one that the robot can have come from.
-void vpVlpLocalizer::startAt(const vpVlpLocation &location)
+//! What a single frame's pose is off by where the robot moved between its time stamp and the lamps' lines.
+void vpVlpLocalizer::addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const
+{
+  double since = 0; // s
+  for (size_t i : members) {
+    since += (timeOf(location, location.observations[i]) - location.timestamp) /
+             static_cast<double>(members.size());
+  }
+  const Eigen::Matrix3d doubt =
+      since * since * (filter.velocityCovariance() + filter.velocity() * filter.velocity().transpose());
+  for (int i : {0, 1}) {
+    location.fix.covariance(i, i) += std::max(doubt(0, 0), doubt(1, 1)); // whatever its heading
+  }
+  location.fix.covariance(5, 5) += doubt(2, 2);
+}
+
+//! \return Whether the velocity is what the last pose tells: there is one that the robot can have come from.
+bool vpVlpLocalizer::startAt(const vpVlpLocation &location)
 {
   static const double recently = 1; // s
   filter.start(location.fix.wMb, location.timestamp);
   if (!m_lastPose || location.timestamp - m_lastPose->time >= recently) {
-    return;
+    return false;
   }
   const double since = location.timestamp - m_lastPose->time;
   const vpHomogeneousMatrix way = m_lastPose->fix.wMb.inverse() * location.fix.wMb;
   const double turn = std::atan2(way[1][0], way[0][0]);
-  if (std::hypot(way[0][3], way[1][3]) < maxSpeed * since && std::abs(turn) < maxTurnRate * since) {
-    filter.comeFrom(m_lastPose->fix, since);
-  } // else it was carried
+  if (std::hypot(way[0][3], way[1][3]) > maxSpeed * since || std::abs(turn) > maxTurnRate * since) {
+    return false; // it was carried
+  }
+  filter.comeFrom(m_lastPose->fix, since);
+  return true;
 }
 
 /*!

@@ -110,6 +110,42 @@ const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &fra
   return tracker.detector.observations();
 }
 
+//! Where the picture shows the map's lamps, by the pose that the filter expects.
+std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
+{
+  std::vector<vpRect> windows;
+  if (!filter.started()) {
+    return windows;
+  }
+  static const double farthest = 3;   // heights of a lamp above the camera
+  static const double doubtful = 0.1; // rad: the lamps are then anywhere
+  const vpVlpFix fix = filter.fixAt(time + m_halfReadout);
+  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
+               turn = std::sqrt(fix.covariance(5, 5));
+  for (const vpLamp &lamp : m_map.lamps) {
+    const double height = lamp.position.z() - fix.wMc[2][3],
+                 apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
+    if (!(height > 0 && apart < farthest * height && turn + place / height < doubtful)) {
+      continue;
+    }
+    Eigen::Vector2d middle;
+    const Eigen::Vector2d extent = vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
+    if (!vpLampTrust::pixelOf(lamp.position, fix.wMc.inverse(), m_rig, middle)) {
+      continue;
+    }
+    static const double sigmas = 3, around = 0.7; // of the extent, on each side
+    const double doubt = sigmas * m_rig.camera.get_px() * (place + turn * apart) / height;
+    const Eigen::Vector2d half =
+        (std::isfinite(lamp.size) ? 0.5 + around : 0.2) * extent + Eigen::Vector2d(doubt, doubt);
+    const Eigen::Vector2d least = (middle - half).cwiseMax(0.0),
+                          most = (middle + half).cwiseMin(Eigen::Vector2d(m_rig.width - 1, m_rig.height - 1));
+    if ((least.array() < most.array()).all()) {
+      windows.emplace_back(least.x(), least.y(), most.x() - least.x(), most.y() - least.y());
+    }
+  }
+  return windows;
+}
+
 //! The pose of these lamps alone, of two of them or of all that agree with each other.
 vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const
 {

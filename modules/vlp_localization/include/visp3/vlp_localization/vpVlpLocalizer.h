@@ -97,7 +97,8 @@ private:
   bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused);
   static std::vector<size_t> inTime(const vpVlpLocation &location, std::vector<size_t> which);
   void begin(vpVlpLocation &location);
-  void startAt(const vpVlpLocation &location);
+  void addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const;
+  bool startAt(const vpVlpLocation &location);
   bool inOrder(double time);
   const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
   std::vector<vpRect> expectedWindows(double time) const;
