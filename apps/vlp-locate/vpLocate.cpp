@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <thread>
 
 #include <unistd.h>
@@ -43,6 +44,7 @@ public:
   vpExitCode run()
   {
     vpInterrupt::install();
+    remarkOnFrames();
     // Where the poses appear on the same terminal, they are the progress.
     vpProgressBar progress(m_source->size(), !(m_options.posesToStdout() && isatty(STDOUT_FILENO) == 1));
     bool ended = false;
@@ -73,6 +75,17 @@ public:
   }
 
 private:
+  void remarkOnFrames() const
+  {
+    if (const std::string remark = m_source->remark(); !remark.empty()) {
+      spdlog::warn("{}; {}", vpOneLine(remark),
+                   m_options.noTrack
+                       ? "each frame is located by itself all the same"
+                       : "a frame that is up to a second late gives no position, at one that is later all "
+                         "begins anew");
+    }
+  }
+
   void locate(vpLocatedFrame &located)
   {
     const vpVlpFrame &frame = located.frame;
@@ -97,6 +110,11 @@ private:
   {
     const vpLineTiming timing = m_rig.lineTiming();
     const double read = timestamp + std::max(timing.middle(0), timing.middle(timing.lines() - 1));
+    static const double setBack = 1; // s: the frames' clock, behind one wild time stamp as well
+    if (timestamp < m_lastTime - setBack) {
+      m_odometryUsed = 0;
+    }
+    m_lastTime = timestamp;
     for (; m_odometryUsed < m_odometry.size(); ++m_odometryUsed) {
       m_localizer.filter.addOdometry(m_odometry[m_odometryUsed]);
       if (m_odometry[m_odometryUsed].timestamp > read) {
@@ -125,6 +143,10 @@ private:
                    std::to_string(frames) + (total == 0 ? "" : " of " + std::to_string(total) + " frames"));
     }
     m_summary.log();
+    if (const size_t left = m_outputs.posesLeftOut(); left > 0) {
+      spdlog::info("{} not among the poses, whose times rise from row to row (--fixes has every frame)",
+                   left == 1 ? "1 position is" : std::to_string(left) + " positions are");
+    }
     return m_summary.positions() > 0 ? vpExitCode::done : vpExitCode::nothingFound;
   }
 
@@ -153,6 +175,7 @@ private:
   vpVlpLocalizer m_localizer;
   std::vector<vpOdometry> m_odometry;
   size_t m_odometryUsed = 0;
+  double m_lastTime = -std::numeric_limits<double>::infinity(); // s, of the last frame
   std::unique_ptr<vpFrameSource> m_source;
   vpLocateSummary m_summary;
   bool m_finished = false;

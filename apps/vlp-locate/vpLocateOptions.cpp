@@ -50,6 +50,10 @@ Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
            in which lamps were looked for, if not in all of the picture. Beside it state, time, pose, and
            the map from above: its lamps, the robot with the ellipse of 3 sigma, its trail, grid in metres.
 Pictures without times (--images, --image) get their index, 0 1 2 ..., as their time.
+Frames are taken in the order in which they are listed. One whose time is not after that of the frame before
+has state none, unless it is more than a second earlier: then the clock was set back, and all begins anew.
+With --no-track it is located all the same. In poses the times rise: a pose with an earlier one has no row.
+A picture that cannot be read, or has not the rig's size, is a line on stderr and has no row anywhere.
 Files appear whole, at the end. Ctrl-C ends the work and keeps what was done so far.
 
 Exit code: 0 done; 2 bad usage or bad input; 3 no position in any frame.

@@ -99,9 +99,7 @@ vpLocateOutputs::vpLocateOutputs(const vpLocateOptions &options, const vpLampMap
 
 void vpLocateOutputs::write(const vpLocatedFrame &located)
 {
-  if (std::ostream *stream = poses(); stream != nullptr && isSure(located.location.fix)) {
-    *stream << vpTumRow(located.location.timestamp, located.location.fix.wMb) << "\n";
-  }
+  writePose(located.location);
   if (m_posesToStdout) {
     std::cout.flush(); // whoever reads along has each pose at once
   }
@@ -131,6 +129,21 @@ std::ostream *vpLocateOutputs::poses()
     return &std::cout;
   }
   return m_poses ? &m_poses->stream() : nullptr;
+}
+
+//! Readers of TUM files take their times to rise, ours among them.
+void vpLocateOutputs::writePose(const vpVlpLocation &location)
+{
+  std::ostream *stream = poses();
+  if (stream == nullptr || !isSure(location.fix)) {
+    return;
+  }
+  if (m_lastPose && location.timestamp <= *m_lastPose) {
+    ++m_posesLeftOut;
+    return;
+  }
+  *stream << vpTumRow(location.timestamp, location.fix.wMb) << "\n";
+  m_lastPose = location.timestamp;
 }
 
 void vpLocateOutputs::writeFix(const vpLocatedFrame &located)

@@ -6,6 +6,7 @@
 #define vpLocateOutputs_h
 
 #include <memory>
+#include <optional>
 
 #include <visp3/vlp_core/vpAtomicFile.h>
 
@@ -38,11 +39,15 @@ public:
   //! Gives the files their names.
   void commit();
 
+  //! Positions that have no row, since their time is not after that of the row above.
+  size_t posesLeftOut() const { return m_posesLeftOut; }
+
   //! The window, or nullptr.
   vpVlpWindow *window() { return m_window.get(); }
 
 private:
   std::ostream *poses();
+  void writePose(const vpVlpLocation &location);
   void writeFix(const vpLocatedFrame &located);
   void writeSeen(const vpLocatedFrame &located);
   void draw(const vpLocatedFrame &located);
@@ -54,6 +59,8 @@ private:
   std::unique_ptr<vpAtomicFile> m_seen;
   vpVlpDashboard m_dashboard;
   std::unique_ptr<vpVlpWindow> m_window;
+  std::optional<double> m_lastPose; // s, of the last row
+  size_t m_posesLeftOut = 0;
 };
 
 END_VISP_NAMESPACE

@@ -5,12 +5,15 @@
 // vlp-locate on sequences: the pose carried from frame to frame, odometry, times that repeat.
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_core/vpCsvTable.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpTrajectory.h>
+#include <visp3/vlp_evaluation/vpFixLog.h>
 
 #include "apps/vpExpectRefused.h"
 #include "apps/vpLocateScene.h"
@@ -66,12 +69,17 @@ public:
   }
 
   //! What vlp-locate says of them.
-  vpCsvTable fixes(const std::vector<std::string> &more = {}) const
+  vpCsvTable fixes(const std::vector<std::string> &more = {})
   {
-    vpProcess locate("vlp-locate", with({"--run", m_folder.path(), "--fixes", m_folder / "fixes.csv"}, more));
+    vpProcess locate("vlp-locate", with({"--run", m_folder.path(), "--fixes", m_folder / "fixes.csv",
+                                         "--poses", m_folder / "poses.tum"},
+                                        more));
     EXPECT_EQ(locate.wait(), 0) << locate.err();
+    said = locate.err();
     return vpCsvTable::load(m_folder / "fixes.csv", fixColumns);
   }
+
+  std::string said; // on stderr by the last fixes()
 
 private:
   vpTemporaryFolder m_folder;
@@ -84,6 +92,32 @@ std::string poseIn(const vpCsvTable &table, size_t row)
     text += table.text(row, column) + ",";
   }
   return text + table.text(row, 13);
+}
+//! Of all these frames, those of \e late have no position, and every other has the right one.
+void expectLate(const vpCsvTable &fixes, const std::vector<std::pair<double, std::string>> &frames,
+                const std::set<size_t> &late)
+{
+  ASSERT_EQ(fixes.rows(), frames.size());
+  for (size_t row = 0; row < frames.size(); ++row) {
+    EXPECT_EQ(fixes.number(row, 0), frames[row].first);
+    EXPECT_EQ(fixes.text(row, 13) == "none", late.count(row) == 1) << row << ": " << fixes.text(row, 13);
+    if (late.count(row) == 0) {
+      const bool there = frames[row].second == "there";
+      EXPECT_NEAR(fixes.number(row, 1), there ? 0.16 : 0.06, 2e-3) << row;
+      EXPECT_NEAR(fixes.number(row, 2), there ? 0.02 : -0.04, 2e-3) << row;
+      EXPECT_NEAR(fixes.number(row, 6), there ? 0.9 : 0.5, 5e-3) << row;
+      EXPECT_TRUE(std::isfinite(fixes.number(row, 10))) << row;
+    }
+  }
+}
+
+size_t count(const std::string &text, const std::string &part)
+{
+  size_t times = 0;
+  for (size_t i = text.find(part); i != std::string::npos; i = text.find(part, i + 1)) {
+    ++times;
+  }
+  return times;
 }
 } // namespace
 
@@ -128,7 +162,7 @@ TEST(VlpLocateTracking, OdometryWithoutASequenceIsRefused)
 
 TEST(VlpLocateTracking, StateGoesFromFixOverTrackingAndCoastingToNone)
 {
-  const Recording run;
+  Recording run;
   std::vector<std::pair<double, std::string>> frames;
   for (int k = 0; k < 10; ++k) {
     frames.emplace_back(0.05 * k, "lamps");
@@ -169,7 +203,7 @@ TEST(VlpLocateTracking, StateGoesFromFixOverTrackingAndCoastingToNone)
 
 TEST(VlpLocateTracking, WithoutTrackingEachFrameIsAsIfItWereAlone)
 {
-  const Recording run;
+  Recording run;
   const std::vector<std::pair<double, std::string>> frames = {
       {0, "lamps"}, {0.05, "there"}, {0.1, "black"}, {0.15, "lamps"}, {0.2, "there"}};
   run.list(frames);
@@ -184,37 +218,119 @@ TEST(VlpLocateTracking, WithoutTrackingEachFrameIsAsIfItWereAlone)
   }
 }
 
-TEST(VlpLocateTracking, FrameWhoseTimeIsRepeatedGivesNothingAndTheRestGoesOn)
+TEST(VlpLocateTracking, FramesThatRepeatATimeOrComeLateGiveNothingAndTheRestGoesOn)
 {
-  const Recording run;
-  run.list({{10, "lamps"},
-            {10.05, "lamps"},
-            {10.05, "there"},
-            {10.1, "lamps"},
-            {10.1, "lamps"},
-            {10.15, "lamps"}});
+  Recording run;
+  const std::vector<std::pair<double, std::string>> frames = {
+      {10, "lamps"},   {10.05, "lamps"}, {10.05, "there"}, {10.1, "lamps"}, {9.9, "lamps"},
+      {9.95, "there"}, {10.1, "lamps"},  {10.15, "lamps"}, {10.2, "lamps"}};
+  run.list(frames);
   const vpCsvTable fixes = run.fixes();
-  ASSERT_EQ(fixes.rows(), 6u);
-  for (size_t row = 0; row < 6; ++row) {
-    EXPECT_EQ(fixes.text(row, 13) == "none", row == 2 || row == 4) << row;
-    if (row != 2 && row != 4) {
-      EXPECT_NEAR(fixes.number(row, 1), 0.06, 2e-3) << row;
-    }
-  }
-  EXPECT_EQ(fixes.text(5, 13), "tracking");
+  expectLate(fixes, frames, {2, 4, 5, 6});
+  EXPECT_EQ(fixes.text(8, 13), "tracking");
+  EXPECT_EQ(count(run.said, "warning"), 1u) << run.said;
+  EXPECT_NE(run.said.find("warning: " + (run / "frames.csv:4: timestamp_s: 10.05, not after the 10.05 of ") +
+                          "the line above (the first of 2 such lines); a frame that is up to a second late"),
+            std::string::npos)
+      << run.said;
+  EXPECT_NE(run.said.find("the frame is not later than the one before it (4)"), std::string::npos)
+      << run.said;
+  EXPECT_EQ(vpTrajectory::load(run / "poses.tum").size(), 5u);
+  EXPECT_EQ(vpFixLog::load(run / "fixes.csv").trajectory().size(), 5u);
 }
 
-TEST(VlpLocateTracking, ListWhoseTimesGoBackIsRefused)
+TEST(VlpLocateTracking, ClockThatIsSetBackBeginsAnewAndThePosesStayInOrder)
+{
+  Recording run;
+  const std::vector<std::pair<double, std::string>> frames = {
+      {10, "lamps"},  {10.05, "lamps"}, {10.1, "lamps"}, {0.05, "there"},
+      {0.1, "there"}, {0.15, "there"},  {10.2, "lamps"}, {10.25, "lamps"}};
+  run.list(frames);
+  const vpCsvTable fixes = run.fixes();
+  expectLate(fixes, frames, {});
+  EXPECT_EQ(fixes.text(3, 13), "fix");
+  EXPECT_EQ(fixes.text(6, 13), "fix");
+  EXPECT_EQ(count(run.said, "warning"), 1u) << run.said;
+  EXPECT_NE(run.said.find(":5: timestamp_s: 0.05, not after the 10.1"), std::string::npos) << run.said;
+  EXPECT_NE(run.said.find("3 positions are not among the poses"), std::string::npos) << run.said;
+  EXPECT_EQ(vpTrajectory::load(run / "poses.tum").size(), 5u);
+  EXPECT_EQ(vpFixLog::load(run / "fixes.csv").count(), 8u);
+}
+
+TEST(VlpLocateTracking, LateFramesAreLocatedWhereEachIsByItself)
+{
+  Recording run;
+  const std::vector<std::pair<double, std::string>> frames = {
+      {10, "lamps"}, {9.9, "there"}, {10, "there"}, {10.1, "lamps"}};
+  run.list(frames);
+  expectLate(run.fixes({"--no-track"}), frames, {});
+  EXPECT_EQ(count(run.said, "warning"), 1u) << run.said;
+  EXPECT_NE(run.said.find("each frame is located by itself all the same"), std::string::npos) << run.said;
+  EXPECT_EQ(vpTrajectory::load(run / "poses.tum").size(), 2u);
+}
+
+TEST(VlpLocateTracking, TimeThatIsNoNumberIsRefused)
 {
   const Recording run;
-  run.list({{10, "lamps"}, {9.9, "lamps"}});
-  expectRefused({"--run", run.path()}, {run / "frames.csv:3", "timestamp_s", "expected a time not before"});
+  for (const std::string time : {"soon", "nan", "inf", ""}) {
+    run.write("frames.csv", "timestamp_s,file\n10,lamps.png\n" + time + ",lamps.png\n");
+    expectRefused({"--run", run.path()}, {run / "frames.csv:3", "timestamp_s", "expected a finite number"});
+  }
+}
+
+// The robot stands, is elsewhere after a gap, and stands again.
+TEST(VlpLocateTracking, GapsOfASecondAndOfAMinute)
+{
+  for (const double gap : {1.0, 60.0}) {
+    for (const std::string after : {"lamps", "there"}) {
+      SCOPED_TRACE(std::to_string(gap) + " s, then " + after);
+      Recording run;
+      std::vector<std::pair<double, std::string>> frames;
+      for (int k = 0; k < 16; ++k) {
+        frames.emplace_back(0.0625 * k + (k < 8 ? 0 : gap), k < 8 ? "lamps" : after);
+      }
+      run.list(frames);
+      const vpCsvTable fixes = run.fixes();
+      expectLate(fixes, frames, {});
+      EXPECT_EQ(run.said.find("warning"), std::string::npos) << run.said;
+      EXPECT_EQ(fixes.text(15, 13), "tracking");
+    }
+  }
+}
+
+// A grabber that hands over one picture several times: nothing new, at new times.
+TEST(VlpLocateTracking, PictureThatIsRepeatedIsARobotThatStands)
+{
+  Recording run;
+  std::vector<std::pair<double, std::string>> frames;
+  for (int k = 0; k < 30; ++k) {
+    frames.emplace_back(0.05 * k, "lamps");
+  }
+  run.list(frames);
+  const vpCsvTable fixes = run.fixes();
+  expectLate(fixes, frames, {});
+  EXPECT_LT(fixes.number(29, 7), 2 * fixes.number(0, 7) + 1e-3);
+}
+
+TEST(VlpLocateTracking, PicturesThatChangeTheirSizeAreRefusedEachAndTheRestGoesOn)
+{
+  Recording run;
+  const cv::Mat small(240, 320, CV_8UC1, cv::Scalar(4)), large(960, 1280, CV_8UC1, cv::Scalar(4));
+  run.write("small.png", encoded(".png", small));
+  run.write("large.png", encoded(".png", large));
+  run.list({{0, "lamps"}, {0.05, "lamps"}, {0.1, "small"}, {0.15, "lamps"}, {0.2, "large"}, {0.25, "lamps"}});
+  const vpCsvTable fixes = run.fixes();
+  expectLate(fixes, {{0, "lamps"}, {0.05, "lamps"}, {0.15, "lamps"}, {0.25, "lamps"}}, {});
+  for (const std::string line : {"small.png: 320 x 240 pixels", "large.png: 1280 x 960 pixels"}) {
+    EXPECT_EQ(count(run.said, "error: " + (run / line) + ", expected 640 x 480 pixels"), 1u) << run.said;
+  }
+  EXPECT_NE(run.said.find("2 other frames could not be used"), std::string::npos) << run.said;
 }
 
 // A robot that stands in the dark: what its wheels say keeps the pose far surer than a guess of its speed.
 TEST(VlpLocateTracking, OdometryCarriesThePoseThroughTheDark)
 {
-  const Recording run;
+  Recording run;
   std::vector<std::pair<double, std::string>> frames;
   for (int k = 0; k < 20; ++k) {
     frames.emplace_back(0.1 * k, k < 6 || k == 19 ? "lamps" : "black");
@@ -233,4 +349,26 @@ TEST(VlpLocateTracking, OdometryCarriesThePoseThroughTheDark)
     EXPECT_NEAR(with.number(row, 6), 0.5, 3 * with.number(row, 10) + 5e-4) << row;
   }
   EXPECT_EQ(without.text(18, 13), "none");
+}
+
+// One time stamp from elsewhere takes up all odometry there is: it has to come again for the frames behind
+// it.
+TEST(VlpLocateTracking, OdometryIsThereAgainBehindAWildTimeStamp)
+{
+  Recording run;
+  std::vector<std::pair<double, std::string>> frames;
+  for (int k = 0; k < 26; ++k) {
+    frames.emplace_back(k == 6 ? 1e6 : 0.1 * k, k < 12 ? "lamps" : "black");
+  }
+  run.list(frames);
+  std::string odometry = "timestamp_s,v_m_s,w_rad_s\n";
+  for (int k = 0; k < 130; ++k) {
+    odometry += vpNumberText(0.02 * k) + ",0,0\n";
+  }
+  const vpCsvTable fixes = run.fixes({"--odometry", run.write("odometry.csv", odometry)});
+  ASSERT_EQ(fixes.rows(), frames.size());
+  for (size_t row = 8; row < frames.size(); ++row) {
+    EXPECT_EQ(fixes.text(row, 13), "tracking") << row;
+    EXPECT_NEAR(fixes.number(row, 1), 0.06, 3 * fixes.number(row, 7) + 5e-4) << row;
+  }
 }

@@ -42,11 +42,27 @@ TEST(FixLog, ReadsEachState)
   EXPECT_TRUE(vpFixLog::load(folder.write("none.csv", header)).fixes.empty());
 }
 
+TEST(FixLog, FramesMayComeLateAndTheTrajectoryIsOfThoseInOrder)
+{
+  const vpTemporaryFolder folder;
+  const vpFixLog log = vpFixLog::load(folder.write("fixes.csv", header + good +
+                                                                    "2,5,2,3,0,0,0,,,,,,A;B,fix,0.1\n"
+                                                                    "1,,,,,,,,,,,,,none,0.01\n"
+                                                                    "1,6,2,3,0,0,0,,,,,,A;B,fix,0.1\n"
+                                                                    "2,7,2,3,0,0,0,,,,,,A;B,fix,0.1\n"
+                                                                    "3,8,2,3,0,0,0,,,,,,A;B,fix,0.1\n"));
+  EXPECT_EQ(log.fixes.size(), 6u);
+  EXPECT_EQ(log.count(), 5u);
+  const vpTrajectory trajectory = log.trajectory();
+  ASSERT_EQ(trajectory.size(), 3u);
+  EXPECT_EQ(trajectory[1].wMb[0][3], 5);
+  EXPECT_EQ(trajectory[2].wMb[0][3], 8);
+}
+
 TEST(FixLog, BadFilesAreRefusedWithFileLineAndColumn)
 {
   const std::vector<std::pair<std::string, std::string>> all = {
-      {"0,1,2,3,0,0,0,,,,,,A,fix,0.1\n",
-       ":3: timestamp_s: 0, expected a time after that of the row above, 0"},
+      {"nan,1,2,3,0,0,0,,,,,,A,fix,0.1\n", ":3: timestamp_s: nan, expected a finite number"},
       {"1,1,2,3,0,0,0,,,,,,A,good,0.1\n",
        ":3: state: good, expected fix, tracking, coasting, ambiguous or none"},
       {"1,1,2,3,0,0,0,,,,,,A,,0.1\n",

@@ -117,6 +117,26 @@ TEST(PictureSequence, RunFolder)
   EXPECT_EQ(all(sequence),
             (std::vector<std::string>{folder / "a.png 10 1.500000", folder / "b.png 20 1.750000",
                                       folder / "a.png 10 1.750000"}));
+  folder.write("frames.csv", "timestamp_s,file\n-1.5,a.png\n60,b.png\n");
+  EXPECT_EQ(vpPictureSequence::fromRun(folder.path()).remark(), "");
+  EXPECT_EQ(vpPictureSequence({folder / "a.png", folder / "a.png"}).remark(), "");
+}
+
+TEST(PictureSequence, FramesThatComeLateKeepTheirPlaceAndAreRemarkedOnOnce)
+{
+  const vpTemporaryFolder folder;
+  picture(folder, "a.png", 10);
+  picture(folder, "b.png", 20);
+  const std::string list = folder.write("frames.csv", "timestamp_s,file\n1,a.png\n0.50,b.png\n2,a.png\n");
+  vpPictureSequence sequence = vpPictureSequence::fromRun(folder.path());
+  EXPECT_EQ(sequence.remark(), list + ":3: timestamp_s: 0.50, not after the 1 of the line above");
+  EXPECT_EQ(all(sequence),
+            (std::vector<std::string>{folder / "a.png 10 1.000000", folder / "b.png 20 0.500000",
+                                      folder / "a.png 10 2.000000"}));
+
+  folder.write("frames.csv", "timestamp_s,file\n1,a.png\n1,b.png\n2,a.png\n-7,a.png\n");
+  EXPECT_EQ(vpPictureSequence::fromRun(folder.path()).remark(),
+            list + ":3: timestamp_s: 1, not after the 1 of the line above (the first of 2 such lines)");
 }
 
 TEST(PictureSequence, BadRunFoldersAreRefusedWithFileAndLine)
@@ -135,7 +155,7 @@ TEST(PictureSequence, BadRunFoldersAreRefusedWithFileAndLine)
   expectBad("timestamp_s,file\n", ": no frames, expected one or more");
   expectBad("timestamp_s,file\n0,a.png\nsoon,b.png\n", ":3: timestamp_s: soon, expected a finite number");
   expectBad("timestamp_s,file\n0,a.png\nnan,b.png\n", ":3: timestamp_s: nan, expected a finite number");
-  expectBad("timestamp_s,file\n1,a.png\n0.5,b.png\n", ":3: timestamp_s: 0.5, expected a time not before");
+  expectBad("timestamp_s,file\n0,a.png\n,b.png\n", ":3: timestamp_s: nothing, expected a finite number");
   expectBad("timestamp_s,file\n0,a.png\n1,\n", ":3: file: nothing, expected a file's name");
   expectBad("timestamp_s,file\n0,a.png\n1\n", ":3: 1 field, expected 2");
 }

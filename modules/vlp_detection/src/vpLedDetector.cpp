@@ -30,15 +30,29 @@ vpLampOutline swapped(vpLampOutline outline)
   return outline;
 }
 
+//! A pixel at most one outside of a picture, which may be far from where the window ends.
+int near(double x, int pixels)
+{
+  return static_cast<int>(std::clamp(x, -1.0, static_cast<double>(pixels)));
+}
+
 //! Windows as lines and samples of the picture, clipped to it.
 std::vector<cv::Rect> linesOf(const std::vector<vpRect> &windows, const vpLinePicture &picture)
 {
   std::vector<cv::Rect> rects;
   for (const vpRect &window : windows) {
-    const int left = static_cast<int>(std::floor(window.getLeft())),
-              top = static_cast<int>(std::floor(window.getTop())),
-              right = static_cast<int>(std::ceil(window.getRight())),
-              bottom = static_cast<int>(std::ceil(window.getBottom()));
+    if (!std::isfinite(window.getRight()) || !std::isfinite(window.getBottom())) {
+      std::ostringstream message;
+      message << "windows: one from (" << window.getLeft() << ", " << window.getTop() << ") to ("
+              << window.getRight() << ", " << window.getBottom() << "), expected finite numbers";
+      throw vpException(vpException::badValue, message.str());
+    }
+    const int columns = picture.transposed ? picture.grey.rows : picture.grey.cols,
+              rows = picture.transposed ? picture.grey.cols : picture.grey.rows;
+    const int left = near(std::floor(window.getLeft()), columns),
+              top = near(std::floor(window.getTop()), rows),
+              right = near(std::ceil(window.getRight()), columns),
+              bottom = near(std::ceil(window.getBottom()), rows);
     cv::Rect rect(left, top, right - left + 1, bottom - top + 1);
     if (picture.transposed) {
       std::swap(rect.x, rect.y);

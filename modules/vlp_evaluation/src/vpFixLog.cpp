@@ -9,7 +9,6 @@
 #include <map>
 
 #include <visp3/vlp_core/vpCsvTable.h>
-#include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpPoseText.h>
 
 BEGIN_VISP_NAMESPACE
@@ -94,10 +93,6 @@ vpFixLog vpFixLog::load(const std::string &filename)
   for (size_t row = 0; row < table.rows(); ++row) {
     vpLoggedFix fix;
     fix.timestamp = table.number(row, timestamp);
-    if (row > 0 && fix.timestamp <= log.fixes.back().timestamp) {
-      table.fail(row, timestamp,
-                 "expected a time after that of the row above, " + vpNumberText(log.fixes.back().timestamp));
-    }
     fix.state = stateOf(table, row);
     if (fix.state != vpLoggedFix::State::none) {
       readPose(table, row, fix);
@@ -126,7 +121,7 @@ vpTrajectory vpFixLog::trajectory() const
 {
   vpTrajectory trajectory;
   for (const vpLoggedFix &fix : fixes) {
-    if (fix.hasPosition()) {
+    if (fix.hasPosition() && (trajectory.empty() || fix.timestamp > trajectory.poses().back().timestamp)) {
       trajectory.add(fix.timestamp, fix.wMb);
     }
   }

@@ -147,15 +147,21 @@ vpPictureSequence vpPictureSequence::fromRun(const std::string &folder)
     fail(list, "no frames, expected one or more");
   }
   vpPictureSequence sequence;
+  size_t late = 0;
   for (size_t row = 0; row < table.rows(); ++row) {
     const double timestamp = table.number(row, 0);
-    if (row > 0 && timestamp < sequence.m_pictures.back().timestamp) {
-      table.fail(row, 0, "expected a time not before that of the line above");
+    if (row > 0 && timestamp <= sequence.m_pictures.back().timestamp && ++late == 1) {
+      sequence.m_remark = list + ":" + std::to_string(row + 2) +
+                          ": timestamp_s: " + vpShown(table.text(row, 0)) + ", not after the " +
+                          vpShown(table.text(row - 1, 0)) + " of the line above";
     }
     if (table.text(row, 1).empty()) {
       table.fail(row, 1, "expected a file's name");
     }
     sequence.m_pictures.push_back({(fs::path(folder) / table.text(row, 1)).string(), timestamp});
+  }
+  if (late > 1) {
+    sequence.m_remark += " (the first of " + std::to_string(late) + " such lines)";
   }
   return sequence;
 }

@@ -94,6 +94,8 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
                           (m_any ? " after that of the frame before, " + vpNumberText(m_time) + " s" : ""));
   }
   detector.check(frame.I);
+  m_again = m_any && m_picture == frame.I;
+  m_picture = frame.I;
   // Windows from the target trackers, a strip in search of new lamps, or all of the picture.
   m_searched = windows(frame, expected);
   if (m_inSight < needed) {
@@ -146,7 +148,7 @@ vpRect vpLampTracker::strip()
 {
   const bool columns = m_rig.shutter.alongColumns();
   const double length = columns ? m_rig.width : m_rig.height, across = columns ? m_rig.height : m_rig.width;
-  const auto strips = static_cast<unsigned int>(std::ceil(1 / std::clamp(searchShare, 0.01, 1.0)));
+  const auto strips = static_cast<unsigned int>(std::ceil(1 / std::max(0.01, std::min(1.0, searchShare))));
   const double width = length / strips, from = (m_strip++ % strips) * width;
   return columns ? vpRect(from, 0, width, across) : vpRect(0, from, across, width);
 }
@@ -199,7 +201,8 @@ void vpLampTracker::assign()
 void vpLampTracker::follow(Track &track, vpLampObservation &seen, const vpVlpFrame &frame)
 {
   if (blinks(seen)) {
-    if (!track.evidence.add(seen.features)) {
+    const bool tells = !m_again || !track.evidence.agrees(seen.features);
+    if (tells && !track.evidence.add(seen.features)) {
       track.number = ++m_born; // another lamp in its place
     }
     const double area = seen.features.area;
@@ -220,7 +223,11 @@ void vpLampTracker::follow(Track &track, vpLampObservation &seen, const vpVlpFra
       track.astray = false;
     }
   } else if (overlap(box, track.target->window()) < alike) {
-    track.target->correct(frame.I, box);
+    try {
+      track.target->correct(frame.I, box);
+    } catch (const vpException &) { // nothing there that the method can follow
+      track.astray = true;
+    }
   }
 }
 

@@ -52,7 +52,8 @@ public:
 
   /*!
     The same inside windows only, pixels; those that overlap are looked at as one. A lamp that a window cuts
-    is seen whole all the same, and so may be a neighbour.
+    is seen whole all the same, and so may be a neighbour. \throw vpException (badValue) where a window's
+    corners are not finite.
   */
   bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows);
 

@@ -48,7 +48,8 @@ struct VISP_EXPORT vpFixLog {
 
   /*!
     \throw vpException (ioError, badValue) with one line that names file, line, column, what came and what was
-    expected. The times increase; a frame with a state other than none has a pose, one with none has not.
+    expected. Frames may come late, so that times repeat or go back; a frame with a state other than none has
+    a pose, one with none has not.
   */
   static vpFixLog load(const std::string &filename);
 
@@ -58,7 +59,7 @@ struct VISP_EXPORT vpFixLog {
   //! Frames with a position that is the only one.
   size_t count() const;
 
-  //! The poses of those.
+  //! The poses of those, but for poses whose time is not after that of the one before.
   vpTrajectory trajectory() const;
 };
 

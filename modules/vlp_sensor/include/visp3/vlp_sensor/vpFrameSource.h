@@ -6,6 +6,7 @@
 #define vpFrameSource_h
 
 #include <cstddef>
+#include <string>
 
 #include <visp3/vlp_core/vpVlpFrame.h>
 
@@ -41,6 +42,9 @@ public:
 
   //! Number of frames in all, 0 where it is unknown.
   virtual size_t size() const { return 0; }
+
+  //! One line on what is odd about the frames in all, and no error. Empty where nothing is.
+  virtual std::string remark() const { return ""; }
 };
 
 END_VISP_NAMESPACE

@@ -29,13 +29,17 @@ public:
   static vpPictureSequence fromPattern(const std::string &pattern);
 
   /*!
-    The frames of a recorded or simulated run: `frames.csv` (`timestamp_s,file`, times not decreasing, files
-    relative to \e folder). \throw vpException where that file is missing, malformed or without frames.
+    The frames of a recorded or simulated run: `frames.csv` (`timestamp_s,file`, files relative to \e folder),
+    in the order of its lines. A time that is not after that of the line above is no error: a recorder that
+    hands over a frame late should not cost the run. remark() names the first such line; whether the frame is
+    of use, whoever takes it decides. \throw vpException where the file is missing, malformed (a time that is
+    no finite number) or without frames.
   */
   static vpPictureSequence fromRun(const std::string &folder);
 
   bool next(vpVlpFrame &frame) override;
   size_t size() const override { return m_pictures.size(); }
+  std::string remark() const override { return m_remark; }
 
 private:
   struct Picture {
@@ -47,6 +51,7 @@ private:
 
   std::vector<Picture> m_pictures;
   size_t m_next = 0;
+  std::string m_remark;
 };
 
 END_VISP_NAMESPACE

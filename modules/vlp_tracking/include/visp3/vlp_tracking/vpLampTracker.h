@@ -26,6 +26,9 @@ BEGIN_VISP_NAMESPACE
   begins anew, with a new number and without an id, until its own stripes give it one. So ids are never handed
   from lamp to lamp where two cross or one is replaced.
 
+  A picture that is that of the frame before, pixel for pixel, has come twice: sensors are never that quiet.
+  Its stripes say nothing new, so that they do not count again.
+
   Steady regions (windows, lamps without stripes) are seen where the search comes by, and not followed.
 
   \code
@@ -54,7 +57,7 @@ public:
     those of all frames of the lamp together, `track` its number. \param expected Where else lamps are to be
     looked for, px: what is known of the robot's motion says so. \throw vpException (dimensionError) where the
     picture has not the size that the rig states; (badValue) where its time is not finite, or not later than
-    that of the one before.
+    that of the one before, or where a window that counts has no finite corners.
   */
   const std::vector<vpLampObservation> &track(const vpVlpFrame &frame,
                                               const std::vector<vpRect> &expected = {});
@@ -84,12 +87,14 @@ private:
   std::vector<Track> m_tracks;
   std::vector<vpRect> m_searched;
   std::vector<vpLampObservation> m_observations;
-  std::vector<int> m_trackOf; // of each observation, -1: none
-  unsigned int m_born = 0;    // lamps in all
-  double m_time = 0;          // s, of the last frame
-  bool m_any = false;         // frame so far
-  unsigned int m_strip = 0;   // that is searched next
-  size_t m_inSight = 0;       // lamps with an id in the last frame
+  std::vector<int> m_trackOf;       // of each observation, -1: none
+  unsigned int m_born = 0;          // lamps in all
+  double m_time = 0;                // s, of the last frame
+  bool m_any = false;               // frame so far
+  vpImage<unsigned char> m_picture; // of the last frame
+  bool m_again = false;             // the one at hand has the picture of the one before
+  unsigned int m_strip = 0;         // that is searched next
+  size_t m_inSight = 0;             // lamps with an id in the last frame
 };
 
 END_VISP_NAMESPACE
