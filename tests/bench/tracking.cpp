@@ -163,7 +163,7 @@ void runs(int seeds)
   }
   Settings typical;
   typical.typical = true;
-  typical.most = 600;
+  typical.most = 300;
   for (const char *name : {"paper-a", "paper-b"}) {
     print(std::string(name) + ", typical rigs", runsOf(name, seeds, typical));
   }
