@@ -31,6 +31,7 @@ size_t accepted(const vpVlpLocation &location)
 void vpVlpLocalizer::begin(vpVlpLocation &location)
 {
   filter.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
+  const bool first = !filter.started();
   bool moving = startAt(location);
   m_trust->forgetPlaces();
   m_trust->mapTolerance = mapTolerance;
@@ -41,16 +42,16 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
       members.push_back(i);
     }
   }
-  if (strain(location, members) > mostStrain) {
+  if (first && strain(location, members) > mostStrain) { // later it may be a robot that starts or stops
     filter.doubtClaims();
     moving = startAt(location);
   }
-  vpVlpLocation first = location, second = location;
-  correct(first, members);
+  vpVlpLocation rough = location, fine = location;
+  correct(rough, members);
   filter.startAgain();
   m_trust->forgetPlaces();
   addMotionDoubt(location, members);
-  const vpVlpFix fix = correct(second, members);
+  const vpVlpFix fix = correct(fine, members);
   // One frame alone hardly tells a robot that moves from lamps that hang a little elsewhere.
   if (moving && fix.valid) {
     location.fix.wMb = fix.wMb;
@@ -109,17 +110,19 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   std::vector<vpLampObservation> apart = location.observations;
   const bool roused = correctRestless(location, whole);
   const bool contradictory = contradicts(location, whole, roused);
-  const bool few = 2 * accepted(location) < whole.size(),
+  const bool few = 2 * accepted(location)<whole.size(), half = whole.size()> 2 &&
+                   2 * accepted(location) == whole.size(),
              lost = filter.state(location.fix) == vpVlpFilter::State::lost;
   m_disagreements = few ? m_disagreements : 0;
-  if (!few && !lost && !contradictory) {
+  if (!few && !half && !lost && !contradictory) {
     return;
   }
   const vpVlpFix alone = solve(apart, whole);
   m_disagreements += alone.valid ? 1 : 0;
   static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
   if (alone.valid && !alone.ambiguous && asBefore(apart, alone) &&
-      (lost || contradictory || alone.degreesOfFreedom > 0 || m_disagreements >= enough)) {
+      (lost || contradictory || m_disagreements >= enough ||
+       (alone.degreesOfFreedom > 0 && alone.lamps.size() > accepted(location)))) {
     if (contradictory) {
       filter.doubtClaims();
     }
@@ -153,6 +156,7 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
     filter.rouse();
   };
   auto few = [&] { return 2 * accepted(location) < whole.size(); };
+  auto half = [&] { return whole.size() > 2 && 2 * accepted(location) == whole.size(); };
   bool roused = false;
   location.fix = correct(location, whole);
   if (accepted(location) == 0 || few() ||
@@ -161,9 +165,16 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
     again();
     location.fix = correct(location, whole);
   }
-  if (few()) {
+  if (few() || half()) {
     again();
     filter.forgetVelocity();
+    location.fix = correct(location, whole);
+  }
+  if (few() || half()) { // rays are not linear in so much: about what they say so far
+    const Eigen::Vector3d velocity = filter.velocity();
+    again();
+    filter.forgetVelocity();
+    filter.guessVelocity(velocity);
     location.fix = correct(location, whole);
   }
   return roused;
@@ -207,7 +218,7 @@ double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<s
 bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable,
                                  bool roused)
 {
-  const int often = ++m_followed <= young && !filter.doubtsClaims() ? 1 : 8; // frames
+  const int often = ++m_followed <= young && !filter.doubtsClaims() ? 2 : 8; // frames
   const auto apart = std::count_if(usable.begin(), usable.end(), [&location](size_t i) {
     return location.observations[i].remark == misplaced;
   });

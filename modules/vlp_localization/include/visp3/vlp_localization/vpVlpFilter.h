@@ -145,6 +145,8 @@ public:
 
   //! Makes the velocity as uncertain as at the start: the robot has changed its mind.
   void forgetVelocity();
+  //! What it may be instead, of that uncertainty: along x and y of b (m/s), and the turn rate (rad/s).
+  void guessVelocity(const Eigen::Vector3d &velocity) { m_x.segment<3>(vx) = velocity; }
 
   /*!
     Predicts up to \e time and keeps the pose of then as a part of the state: what follows corrects it, too
