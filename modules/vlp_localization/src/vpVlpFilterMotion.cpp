@@ -95,7 +95,7 @@ void vpVlpFilter::move(double dt, bool accelerates)
 }
 
 //! The velocity is what the sample says of its interval, whatever it was before.
-void vpVlpFilter::followOdometry(const vpOdometry &sample, double dt)
+void vpVlpFilter::followOdometry(const vpOdometry &before, const vpOdometry &sample)
 {
   static const double anySpeed = 1, anyTurn = 10; // m/s, rad/s: wheels start and stop within a sample
   for (int i : {vx, vy, w}) {
@@ -111,11 +111,14 @@ void vpVlpFilter::followOdometry(const vpOdometry &sample, double dt)
   H(2, turnBias) = 1;
   // An error that changes from sample to sample averages out over samples, however long they are.
   static const double usual = 0.02; // s
+  const double dt = sample.timestamp - before.timestamp;
   const double share = odometryShare * std::sqrt(usual / std::max(dt, 1e-3));
+  // Where speeds change from sample to sample they do so within one.
+  static const double within = 0.3; // share of the change, standard deviation
   Matrix R = Matrix::Zero(3, 3);
-  R(0, 0) = square(odometrySpeed) + square(share * sample.v);
+  R(0, 0) = square(odometrySpeed) + square(share * sample.v) + square(within * (sample.v - before.v));
   R(1, 1) = square(sidewaysSpeed);
-  R(2, 2) = square(odometryTurnRate) + square(share * sample.w);
+  R(2, 2) = square(odometryTurnRate) + square(share * sample.w) + square(within * (sample.w - before.w));
   const Eigen::Vector3d innovation(sample.v - (1 + m_x(speedScale)) * m_x(vx), -m_x(vy),
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
   measure(H, innovation, R);
@@ -141,7 +144,7 @@ void vpVlpFilter::advance(double time)
       wander(until);
     } else {
       if (m_followed != end.timestamp) {
-        followOdometry(end, end.timestamp - begin.timestamp);
+        followOdometry(begin, end);
         m_followed = end.timestamp;
       }
       move(until - m_time, false);

@@ -199,7 +199,7 @@ private:
   void measure(const Matrix &H, const Vector &innovation, const Matrix &R);
   void move(double dt, bool accelerates);
   void wander(double time);
-  void followOdometry(const vpOdometry &sample, double dt);
+  void followOdometry(const vpOdometry &before, const vpOdometry &sample);
 
   vpVlpRig m_rig;
   bool m_started = false;
