@@ -74,8 +74,9 @@ void countIds(const vpVlpLocation &location, vpSimulation &simulation, Run &run)
     const vpCameraParameters &camera = simulation.rig().camera;
     const double u = camera.get_u0() + camera.get_px() * c[0] / c[2],
                  v = camera.get_v0() + camera.get_py() * c[1] / c[2];
-    const Eigen::Vector4d box = seen.outline.box();
-    run.wrong += !(u > box(0) - 5 && u < box(2) + 5 && v > box(1) - 5 && v < box(3) + 5);
+    // A part of it that others leave in sight lies anywhere in its disc.
+    const double radius = 0.5 * lamp->size * camera.get_px() / c[2], about = 5; // px
+    run.wrong += std::hypot(seen.outline.centre.x() - u, seen.outline.centre.y() - v) > radius + about;
   }
 }
 

@@ -14,12 +14,6 @@ namespace
 {
 using Signal = vpStripeFeatures::Signal;
 
-bool saysSomething(const vpStripeFeatures &seen)
-{
-  return seen.signal != Signal::unmodulated && std::isfinite(seen.frequency) &&
-         seen.frequencySigma < seen.frequency && (seen.signal != Signal::coded || !seen.chips.empty());
-}
-
 //! Adds one estimate to the weighted mean of others.
 void average(double &mean, double &sigma, double value, double valueSigma)
 {
@@ -29,12 +23,18 @@ void average(double &mean, double &sigma, double value, double valueSigma)
 }
 } // namespace
 
+bool vpLedIdEvidence::tells(const vpStripeFeatures &seen)
+{
+  return seen.signal != Signal::unmodulated && std::isfinite(seen.frequency) &&
+         seen.frequencySigma < seen.frequency && (seen.signal != Signal::coded || !seen.chips.empty());
+}
+
 bool vpLedIdEvidence::agrees(const vpStripeFeatures &seen) const
 {
   auto near = [this](double a, double sigma, double b, double other) {
     return std::abs(a - b) < gate * std::hypot(sigma, other);
   };
-  if (m_frames == 0 || !saysSomething(seen)) {
+  if (m_frames == 0 || !tells(seen)) {
     return true;
   }
   return seen.signal == m_features.signal && seen.chips == m_features.chips &&
@@ -48,7 +48,7 @@ bool vpLedIdEvidence::agrees(const vpStripeFeatures &seen) const
 
 bool vpLedIdEvidence::add(const vpStripeFeatures &seen)
 {
-  if (!saysSomething(seen)) {
+  if (!tells(seen)) {
     if (m_frames == 0) {
       m_features = seen;
     }

@@ -205,9 +205,12 @@ void vpLampTracker::follow(Track &track, vpLampObservation &seen, const vpVlpFra
     if (tells && !track.evidence.add(seen.features)) {
       track.number = ++m_born; // another lamp in its place
     }
-    const double area = seen.features.area;
-    seen.features = track.evidence.features();
-    seen.features.area = area;
+    // What tells nothing may be any part of this lamp and of others before it: old evidence is none of it.
+    if (vpLedIdEvidence::tells(seen.features)) {
+      const double area = seen.features.area;
+      seen.features = track.evidence.features();
+      seen.features.area = area;
+    }
     track.seenLast = frame.timestamp;
   }
   seen.track = track.number;

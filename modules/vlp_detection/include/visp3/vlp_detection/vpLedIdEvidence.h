@@ -32,17 +32,20 @@ class VISP_EXPORT vpLedIdEvidence
 public:
   double gate = 5; // standard deviations; a frame farther off shows another lamp, and evidence begins anew
 
+  //! Whether features say anything about an id: not without stripes, of a word not seen whole, with too few
+  //! stripes for a frequency.
+  static bool tells(const vpStripeFeatures &seen);
+
   /*!
-    \param seen One frame's. Features that say nothing (no stripes, a word not seen whole, too few stripes for
-    a frequency) count as no frame.
+    \param seen One frame's. Features that tell nothing count as no frame.
     \return False where it contradicts what came before, which is then forgotten.
   */
   bool add(const vpStripeFeatures &seen);
 
-  //! Whether a frame may show the lamp that the frames before showed; so may one that says nothing.
+  //! Whether a frame may show the lamp that the frames before showed; so may one that tells nothing.
   bool agrees(const vpStripeFeatures &seen) const;
 
-  //! Of all frames together; the last frame's where none said anything.
+  //! Of all frames together; the last frame's where none told anything.
   const vpStripeFeatures &features() const { return m_features; }
 
   //! Frames that the features rest on.
