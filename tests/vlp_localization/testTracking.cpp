@@ -103,6 +103,49 @@ TEST(Tracking, CarriesThePoseWithinItsSigma)
   }
 }
 
+// At 5 Hz a robot turns too far between two frames for a filter that knows nothing of its velocity yet.
+TEST(Tracking, SecondFrameOfASlowCameraIsAsGoodAsTheNext)
+{
+  const Room room;
+  const auto arc = [](double t) {
+    return Place{0.25 * std::sin(0.4 * t), 0.25 * (1 - std::cos(0.4 * t)), 0.4 * t};
+  };
+  vpVlpLocalizer localizer = room.localizer();
+  for (int k = 0; k < 8; ++k) {
+    const double t = 0.2 * k;
+    const vpVlpLocation location = localizer.process(room.frame(t, arc));
+    EXPECT_TRUE(isAt(location, arc(t), 5)) << k;
+    if (k > 0) {
+      EXPECT_LT(errorOf(location.fix, arc(t)), 0.0003) << k;
+    }
+  }
+  EXPECT_FALSE(localizer.filter.doubtsClaims());
+}
+
+// Faster than any motor: whatever it does, two frames later the pose is as good as before, and map and camera
+// are still believed.
+TEST(Tracking, RobotThatStopsAndTurnsAtOnceIsFollowed)
+{
+  const Room room;
+  const auto path = [](double t) {
+    const double driven = std::min(t, 1.0), turned = std::max(0.0, t - 1);
+    return Place{-0.1 + 0.2 * driven, 0.05, 0.2 + 2 * std::min(turned, 0.5)};
+  };
+  vpVlpLocalizer localizer = room.localizer();
+  for (int k = 0; k < 40; ++k) {
+    const double t = k * frameTime;
+    const vpVlpLocation location = localizer.process(room.frame(t, path));
+    ASSERT_TRUE(location.fix.valid) << k << ": " << location.fix.refusal;
+    EXPECT_LT(errorOf(location.fix, path(t)), 0.01) << k;
+    const bool changing = k < 2 || (k >= 20 && k < 22) || (k >= 30 && k < 32);
+    if (!changing) {
+      EXPECT_TRUE(isAt(location, path(t), 5)) << k;
+      EXPECT_LT(errorOf(location.fix, path(t)), 0.001) << k;
+    }
+  }
+  EXPECT_FALSE(localizer.filter.doubtsClaims());
+}
+
 TEST(Tracking, FrameThatIsNotLaterIsRefusedInOneLineAndTheNextGoesOn)
 {
   const Room room;

@@ -224,6 +224,23 @@ TEST(LampTracker, LampInAnothersPlaceGetsANewNumberAndNeverItsId)
   }
 }
 
+// Less than a period of slow stripes says nothing: the id that the track had says nothing of it either.
+TEST(LampTracker, RegionThatTellsNothingHasNoId)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  for (int k = 0; k < 8; ++k) {
+    const Lamp lamp{200, 150, k < 5 ? 2600. : 250.};
+    const std::vector<vpLampObservation> &all = tracker.track(scene.frame(k, {lamp, {80, 80, 3500}}));
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(),
+                            [](const vpLampObservation &each) { return each.id == idOf(3500); }));
+    EXPECT_EQ(std::any_of(all.begin(), all.end(),
+                          [](const vpLampObservation &each) { return each.id == idOf(2600); }),
+              k < 5)
+        << k;
+  }
+}
+
 TEST(LampTracker, LampsThatCrossKeepTheirIds)
 {
   const Scene scene;
