@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vpLampConsensus.h"
 #include "vpLampTrust.h"
@@ -101,17 +102,20 @@ bool vpVlpLocalizer::startAt(const vpVlpLocation &location)
 */
 void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
-  std::vector<vpLampObservation> all = location.observations;
+  const std::vector<vpLampObservation> all = location.observations;
   const std::vector<size_t> whole = unchanged(location, usable);
-  if ((2 * whole.size() < usable.size() && elsewhere(all, usable, location)) ||
-      (m_followed < young && vague(location.timestamp) && beginAnew(location, whole))) {
+  // Most lamps have changed where the robot is elsewhere; and a filter that is too young is no help.
+  const bool changed = 2 * whole.size() < usable.size(),
+             unknown = m_followed < young && vague(location.timestamp);
+  if ((changed && beginAnew(location, all, usable, true)) ||
+      (unknown && beginAnew(location, location.observations, whole, false))) {
     return;
   }
   std::vector<vpLampObservation> apart = location.observations;
   const bool roused = correctRestless(location, whole);
   const bool contradictory = contradicts(location, whole, roused);
-  const bool few = 2 * accepted(location)<whole.size(), half = whole.size()> 2 &&
-                   2 * accepted(location) == whole.size(),
+  const size_t fitting = 2 * accepted(location);
+  const bool few = fitting<whole.size(), half = whole.size()> 2 && fitting == whole.size(),
              lost = filter.state(location.fix) == vpVlpFilter::State::lost;
   m_disagreements = few ? m_disagreements : 0;
   if (!few && !half && !lost && !contradictory) {
@@ -155,22 +159,24 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
     location.observations = seen;
     filter.rouse();
   };
-  auto few = [&] { return 2 * accepted(location) < whole.size(); };
-  auto half = [&] { return whole.size() > 2 && 2 * accepted(location) == whole.size(); };
+  auto few = [&](bool orHalf) {
+    const size_t fitting = 2 * accepted(location);
+    return fitting < whole.size() || (orHalf && whole.size() > 2 && fitting == whole.size());
+  };
   bool roused = false;
   location.fix = correct(location, whole);
-  if (accepted(location) == 0 || few() ||
+  if (accepted(location) == 0 || few(false) ||
       !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
     roused = accepted(location) > 0;
     again();
     location.fix = correct(location, whole);
   }
-  if (few() || half()) {
+  if (few(true)) {
     again();
     filter.forgetVelocity();
     location.fix = correct(location, whole);
   }
-  if (few() || half()) { // rays are not linear in so much: about what they say so far
+  if (few(true)) { // rays are not linear in so much: about what they say so far
     const Eigen::Vector3d velocity = filter.velocity();
     again();
     filter.forgetVelocity();
@@ -282,32 +288,19 @@ bool vpVlpLocalizer::vague(double time) const
   return turn + place / std::max(height, 0.1) > most;
 }
 
-//! From where the lamps of this frame alone say that the robot is, if they say so.
-bool vpVlpLocalizer::beginAnew(vpVlpLocation &location, const std::vector<size_t> &usable)
-{
-  std::vector<vpLampObservation> apart = location.observations;
-  const vpVlpFix alone = solve(apart, usable);
-  if (!alone.valid || alone.ambiguous || !asBefore(apart, alone)) {
-    return false;
-  }
-  location.observations = apart;
-  location.fix = alone;
-  begin(location);
-  return true;
-}
-
 /*!
-  Whether lamps that seem to have changed are as before from where they themselves say that the robot is: then
-  it is there, and the filter begins anew.
+  Begins anew where the lamps of this frame alone say that the robot is, if they look from there as they did
+  before. \param proven A lamp more than a pose needs has to bear it out.
 */
-bool vpVlpLocalizer::elsewhere(std::vector<vpLampObservation> &observations,
-                               const std::vector<size_t> &usable, vpVlpLocation &location)
+bool vpVlpLocalizer::beginAnew(vpVlpLocation &location, std::vector<vpLampObservation> observations,
+                               const std::vector<size_t> &usable, bool proven)
 {
   const vpVlpFix alone = solve(observations, usable);
-  if (!alone.valid || alone.ambiguous || alone.degreesOfFreedom == 0 || !asBefore(observations, alone)) {
+  if (!alone.valid || alone.ambiguous || (proven && alone.degreesOfFreedom == 0) ||
+      !asBefore(observations, alone)) {
     return false;
   }
-  location.observations = observations;
+  location.observations = std::move(observations);
   location.fix = alone;
   begin(location);
   return true;

@@ -90,7 +90,8 @@ private:
   vpVlpFix solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const;
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
   bool vague(double time) const;
-  bool beginAnew(vpVlpLocation &location, const std::vector<size_t> &usable);
+  bool beginAnew(vpVlpLocation &location, std::vector<vpLampObservation> observations,
+                 const std::vector<size_t> &usable, bool proven);
   bool correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
   vpVlpFix correct(vpVlpLocation &location, const std::vector<size_t> &usable);
   double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
@@ -106,8 +107,6 @@ private:
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
 
-  bool elsewhere(std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable,
-                 vpVlpLocation &location);
   bool asBefore(const std::vector<vpLampObservation> &observations, const vpVlpFix &fix) const;
   std::vector<size_t> unchanged(vpVlpLocation &location, const std::vector<size_t> &usable);
   vpLampExtent expectedExtent(const vpLamp &lamp) const;
