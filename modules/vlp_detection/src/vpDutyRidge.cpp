@@ -47,7 +47,7 @@ vpDutyRidge::Reading vpDutyRidge::of(const vpStripeFeatures &seen, const std::op
                                      double dutyError)
 {
   static const double anyDuty = 0.5, anyDutySigma = 0.3; // the spread of a uniform one
-  Reading reading{seen.frequency, seen.frequencySigma, seen.duty, seen.dutySigma, 1, 0};
+  Reading reading{seen.frequency, seen.frequencySigma, seen.duty, seen.dutySigma, 1, 0, 0};
   if (seen.alongDuty.size() < 2) {
     if (stated) {
       const double sigma = std::hypot(seen.dutySigma, dutyError), z = (seen.duty - *stated) / sigma;
@@ -59,7 +59,7 @@ vpDutyRidge::Reading vpDutyRidge::of(const vpStripeFeatures &seen, const std::op
   const double mean = stated.value_or(anyDuty), sigma = stated ? dutyError : anyDutySigma;
   static const int finer = 4; // than the slices
   double all = 0, least = std::numeric_limits<double>::infinity();
-  Moments frequency, duty;
+  Moments frequency, duty, middle; // middle: frequency, by the duty alone
   for (size_t i = 1; i < seen.alongDuty.size(); ++i) {
     for (int k = 0; k < finer; ++k) {
       const vpDutySlice slice = between(seen.alongDuty[i - 1], seen.alongDuty[i], (k + 0.5) / finer);
@@ -70,6 +70,7 @@ vpDutyRidge::Reading vpDutyRidge::of(const vpStripeFeatures &seen, const std::op
       all += likelihood;
       frequency.add(weight, slice.frequency - seen.frequency, square(slice.frequencySigma));
       duty.add(weight, slice.duty, square(width) / 12);
+      middle.add(weight, slice.frequency - seen.frequency, 0);
       least = std::min(least, slice.chiSquare + square(z));
     }
   }
@@ -82,6 +83,7 @@ vpDutyRidge::Reading vpDutyRidge::of(const vpStripeFeatures &seen, const std::op
   reading.frequencySigma = frequency.sigma();
   reading.duty = duty.mean();
   reading.dutySigma = duty.sigma();
+  reading.spread = stated ? 0 : middle.sigma();
   if (stated) {
     reading.density = frequency.weight / all;
     reading.distance = std::sqrt(least);

@@ -22,6 +22,7 @@ public:
     double duty, dutySigma;
     double density;  // of the duty that was seen
     double distance; // of it, standard deviations
+    double spread;   // Hz, of frequencies by a duty that is not stated, standard deviation
   };
 
   /*!

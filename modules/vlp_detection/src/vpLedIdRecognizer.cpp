@@ -172,7 +172,8 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   const vpDutyRidge::Reading reading =
       vpDutyRidge::of(seen, sent.duty, std::hypot(dutyError, bySaturation * lamp.saturated));
   candidate.seen = reading.frequency;
-  candidate.reach = reachOf(reading.frequencySigma, seen.frequencyBound);
+  candidate.reach =
+      std::hypot(reachOf(reading.frequencySigma, seen.frequencyBound), spreadGate * reading.spread);
   candidate.sigma = std::hypot(reading.frequencySigma, candidate.clock);
   candidate.weight = (1 - unknownPrior) * static_cast<double>(identifier.lamps.size()) /
                      static_cast<double>(m_map.lamps.size());

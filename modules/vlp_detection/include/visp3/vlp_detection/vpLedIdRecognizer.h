@@ -38,7 +38,7 @@ struct VISP_EXPORT vpRowTimeError {
   the gate on the estimate's error grows no wider than `boundGate` times what edges anywhere leave
   (vpStripeFeatures::frequencyBound), and what is known `maxSpread` times worse than that has no candidate.
   Where duty and frequency are known together only (vpStripeFeatures::alongDuty), each identifier is compared
-  with what the frequency would be with its duty.
+  with what the frequency would be with its duty, and one that states none within `spreadGate` of all of them.
 
   One that has at least `minConfidence` and a single lamp gives the id. What several lamps of one identifier
   leave open, or several candidates, is for geometry to decide: `candidates` hands them on.
@@ -48,6 +48,7 @@ class VISP_EXPORT vpLedIdRecognizer
 public:
   double gate = 3.5;               // standard deviations, on the frequency
   double boundGate = 2.1;          // times the bound, on what the estimate is off by
+  double spreadGate = 1.2;         // standard deviations, on what an unstated duty leaves open of it
   double shapeGate = 4;            // standard deviations, on duty and phase difference
   double minConfidence = 0.99;     // probability below which no id is given
   double maxFrequencyDoubt = 0.03; // share of the frequency: less certain stripes are recognised as nothing
