@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
+#include <visp3/vlp_core/vpRoundStep.h>
 
 #include "common/vpTextBlock.h"
 
@@ -18,18 +19,6 @@ namespace
 const cv::Scalar paper(44, 38, 34), gridColour(74, 66, 60), axisColour(110, 98, 90);
 constexpr int subPixel = 4;         // bits that OpenCV's drawing takes as the fraction of a coordinate
 constexpr double farthest = 100000; // px; OpenCV's drawing overflows at a multiple of it
-
-//! The least of 1, 2, 5 times a power of ten that is no less than \e value.
-double round125(double value)
-{
-  const double power = std::pow(10, std::floor(std::log10(value)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= value) {
-      return factor * power;
-    }
-  }
-  return 10 * power;
-}
 
 std::string metres(double value, double step)
 {
@@ -77,7 +66,7 @@ bool vpMapSheet::shows(const Eigen::Vector2d &place) const
 //! m, between lines of the grid.
 double vpMapSheet::step() const
 {
-  return round125(m_view.sizes().maxCoeff() / 8);
+  return vpRoundStep(m_view.sizes().maxCoeff() / 8);
 }
 
 void vpMapSheet::drawGrid()

@@ -11,6 +11,7 @@
 
 #include "common/vpExpectError.h"
 #include "common/vpLampPicture.h"
+#include "common/vpUpwardRig.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
@@ -18,17 +19,6 @@ using namespace VISP_NAMESPACE_NAME;
 
 namespace
 {
-
-vpVlpRig rig(unsigned int width, unsigned int height)
-{
-  vpVlpRig rig;
-  rig.width = width;
-  rig.height = height;
-  rig.camera.initPersProjWithoutDistortion(500, 500, 0.5 * width, 0.5 * height);
-  rig.shutter.rowTime = rig.shutter.exposure = 40e-6;
-  rig.shutter.rowTimeSigma = 4e-9;
-  return rig;
-}
 
 vpLampMap map()
 {
@@ -78,7 +68,7 @@ const vpLampObservation *find(const vpLedDetector &detector, const std::string &
 
 TEST(LedDetector, NamesKnownLampsAndReportsAnUnknownOne)
 {
-  vpLedDetector detector(rig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
   ASSERT_TRUE(detector.detect(picture().render()));
   EXPECT_EQ(detector.getNbObjects(), 4u);
   ASSERT_EQ(detector.observations().size(), 4u);
@@ -98,7 +88,7 @@ TEST(LedDetector, NamesKnownLampsAndReportsAnUnknownOne)
 
 TEST(LedDetector, MessagesAndPolygonsAsEveryVispDetector)
 {
-  vpLedDetector detector(rig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
   detector.detect(picture().render());
   vpDetectorBase &base = detector;
   for (size_t i = 0; i < base.getNbObjects(); ++i) {
@@ -114,7 +104,7 @@ TEST(LedDetector, ColumnsSeeTheSameLampsAsRows)
 {
   vpLampPicture painted = picture();
   painted.columns = true;
-  vpVlpRig columns = rig(400, 320);
+  vpVlpRig columns = vpUpwardRig(400, 320);
   columns.shutter.readout = vpRollingShutter::Readout::columns;
   vpLedDetector detector(columns, map());
   ASSERT_TRUE(detector.detect(painted.render()));
@@ -146,7 +136,7 @@ TEST(LedDetector, NearestNeighbourResizeKeepsTheFrequencyNearHalfTheSamplingRate
       delivered[y][x] = full[static_cast<unsigned int>(y * 2.56)][static_cast<unsigned int>(x * 2.56)];
     }
   }
-  vpVlpRig resized = rig(200, 200);
+  vpVlpRig resized = vpUpwardRig(200, 200);
   resized.shutter.rowTime = 45e-6;
   resized.shutter.exposure = 60e-6;
   resized.resize.method = vpPictureResize::Method::nearest;
@@ -162,7 +152,7 @@ TEST(LedDetector, LampCutByTheBorderIsFlagged)
 {
   vpLampPicture painted = picture();
   painted.lamps = {lamp(8, 150, 2000)};
-  vpLedDetector detector(rig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
   ASSERT_TRUE(detector.detect(painted.render()));
   ASSERT_EQ(detector.observations().size(), 1u);
   EXPECT_TRUE(detector.observations()[0].cut);
@@ -178,7 +168,7 @@ TEST(LedDetector, UnmodulatedLampAndWindowAreNoLampsOfTheMap)
   vpPaintedLamp steady = lamp(80, 80, 0);
   steady.pulses = {{0, 1}};
   painted.lamps = {window, steady};
-  vpLedDetector detector(rig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
   ASSERT_TRUE(detector.detect(painted.render()));
   EXPECT_EQ(detector.observations().size(), 2u);
   for (const vpLampObservation &seen : detector.observations()) {
@@ -193,7 +183,7 @@ TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
   for (vpPaintedLamp &lamp : painted.lamps) {
     lamp.amplitude = 900; // lit lines clip at 255
   }
-  vpLedDetector detector(rig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
   ASSERT_TRUE(detector.detect(painted.render()));
   const vpLampObservation *seen = find(detector, "L2000");
   ASSERT_NE(seen, nullptr);
@@ -203,17 +193,17 @@ TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
 
 TEST(LedDetector, RefusesAPictureOfAnotherSize)
 {
-  vpLedDetector detector(rig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
   const vpImage<unsigned char> I(320, 402);
   vpExpectError([&] { detector.detect(I); }, {"402 x 320", "400 x 320"});
-  vpExpectError([&] { vpLedDetector(rig(0, 0), map()); }, {"size"});
+  vpExpectError([&] { vpLedDetector(vpUpwardRig(0, 0), map()); }, {"size"});
 }
 
 TEST(LedDetector, DarkWhiteAndTinyPicturesHoldNoKnownLamp)
 {
   for (const auto &[width, height] : {std::pair{400u, 320u}, {1u, 1u}, {400u, 1u}, {1u, 320u}}) {
     for (unsigned char grey : {0, 128, 255}) {
-      vpLedDetector detector(rig(width, height), map());
+      vpLedDetector detector(vpUpwardRig(width, height), map());
       detector.detect(vpImage<unsigned char>(height, width, grey));
       for (const vpLampObservation &seen : detector.observations()) {
         EXPECT_TRUE(seen.id.empty()) << width << " x " << height << ", grey " << static_cast<int>(grey);

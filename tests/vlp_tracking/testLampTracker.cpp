@@ -16,6 +16,7 @@
 
 #include "common/vpExpectError.h"
 #include "common/vpLampPicture.h"
+#include "common/vpUpwardRig.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
@@ -53,12 +54,7 @@ public:
 
   vpVlpRig rig() const
   {
-    vpVlpRig rig;
-    rig.width = static_cast<unsigned int>(width);
-    rig.height = static_cast<unsigned int>(height);
-    rig.camera.initPersProjWithoutDistortion(500, 500, 0.5 * width, 0.5 * height);
-    rig.shutter.rowTime = rig.shutter.exposure = 40e-6;
-    rig.shutter.rowTimeSigma = 4e-9;
+    vpVlpRig rig = vpUpwardRig(static_cast<unsigned int>(width), static_cast<unsigned int>(height));
     rig.shutter.readout = columns ? vpRollingShutter::Readout::columns : vpRollingShutter::Readout::rows;
     return rig;
   }

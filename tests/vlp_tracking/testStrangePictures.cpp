@@ -12,6 +12,7 @@
 #include <visp3/vlp_tracking/vpLampTracker.h>
 
 #include "common/vpExpectError.h"
+#include "common/vpUpwardRig.h"
 #include "trackedScenes.h"
 
 using namespace trackedScenes;
@@ -72,13 +73,7 @@ vpTargetScene red(unsigned int seed)
 //! A camera of the pictures of trackedScenes, whose map knows the striped lamp of seed 1.
 vpVlpRig rig(unsigned int width = 400, unsigned int height = 300)
 {
-  vpVlpRig rig;
-  rig.width = width;
-  rig.height = height;
-  rig.camera.initPersProjWithoutDistortion(500, 500, 0.5 * width, 0.5 * height);
-  rig.shutter.rowTime = rig.shutter.exposure = 40e-6;
-  rig.shutter.rowTimeSigma = 4e-9;
-  return rig;
+  return vpUpwardRig(width, height);
 }
 
 vpLampMap map()

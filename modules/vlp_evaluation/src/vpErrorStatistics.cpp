@@ -10,6 +10,7 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpRoundStep.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -21,18 +22,6 @@ double percentileOfSorted(const std::vector<double> &sorted, double share)
   const auto below = static_cast<size_t>(index);
   const size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (index - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-//! The least 1, 2 or 5 times a power of ten that is \e width or more.
-double roundedUp(double width)
-{
-  const double power = std::pow(10, std::floor(std::log10(width)));
-  for (const double step : {1., 2., 5.}) {
-    if (step * power >= width) {
-      return step * power;
-    }
-  }
-  return 10 * power;
 }
 } // namespace
 
@@ -88,7 +77,7 @@ vpErrorDistribution::vpErrorDistribution(std::vector<double> errors)
   }
   std::sort(m_errors.begin(), m_errors.end());
   constexpr double bins = 20, least = 1e-9; // m; errors below it are rounding
-  m_binWidth = roundedUp(std::max(m_errors.back(), least) / bins);
+  m_binWidth = vpRoundStep(std::max(m_errors.back(), least) / bins);
   const auto binOf = [this](double error) { return static_cast<size_t>(error / m_binWidth); };
   m_pmf.assign(binOf(m_errors.back()) + 1, 0);
   for (const double error : m_errors) {
