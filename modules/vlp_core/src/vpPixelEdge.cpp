@@ -7,17 +7,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vpNormalTable.h"
+
 BEGIN_VISP_NAMESPACE
 
 vpPixelEdge vpPixelEdge::at(double d, const Eigen::Vector2d &normal, double blur, double exactUpTo)
 {
   static const double boxes = 1.0 / 12; // px^2, variance of both, whatever the normal
-  auto phi = [](double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); };
-  auto below = [](double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); };
   const double spread = std::sqrt(blur * blur + boxes);
   if (blur > exactUpTo || std::abs(d) > 1 + 4 * spread) {
     const double z = -d / spread;
-    return {below(z), phi(z) / spread, -z * phi(z) * blur / (spread * spread)};
+    const vpNormalTable::Value edge = vpNormalTable::at(z);
+    return {edge.below, edge.density / spread, -z * edge.density * blur / (spread * spread)};
   }
   static const double narrowest = 0.02; // px; a narrower box would cancel digits and change nothing
   const double p = std::max(0.5 * std::abs(normal.x()), narrowest);
@@ -27,10 +28,11 @@ vpPixelEdge vpPixelEdge::at(double d, const Eigen::Vector2d &normal, double blur
   vpPixelEdge edge{0, 0, 0};
   for (int i = 0; i < 4; ++i) {
     const double z = (shift[i] - d) / blur;
-    const double once = z * below(z) + phi(z);
-    edge.share += sign[i] * 0.5 * (z * once + below(z));
+    const vpNormalTable::Value corner = vpNormalTable::at(z);
+    const double once = z * corner.below + corner.density;
+    edge.share += sign[i] * 0.5 * (z * once + corner.below);
     edge.byShift += sign[i] * once;
-    edge.byBlur += sign[i] * below(z);
+    edge.byBlur += sign[i] * corner.below;
   }
   const double area = 4 * p * q;
   edge.share *= blur * blur / area;

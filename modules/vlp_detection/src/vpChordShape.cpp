@@ -21,20 +21,34 @@ const double noFit = 1e6; // px
 
 //! The points no farther than \e nearly from their convex hull.
 std::vector<cv::Point2f> onHull(const std::vector<cv::Point2f> &points, const std::vector<cv::Point2f> &hull,
-                                double nearly)
+                                float nearly)
 {
-  std::vector<cv::Point2f> outer;
-  for (const cv::Point2f &p : points) {
-    double nearest = 1e9;
-    for (size_t i = 0; i < hull.size(); ++i) {
-      const cv::Point2f side = hull[(i + 1) % hull.size()] - hull[i];
-      const double length = std::hypot(side.x, side.y);
-      if (length > 0) {
-        nearest = std::min(nearest, std::abs(side.cross(p - hull[i])) / length);
-      }
+  struct Side {
+    cv::Point2f from, normal;
+  };
+  std::vector<Side> sides;
+  for (size_t i = 0; i < hull.size(); ++i) {
+    const cv::Point2f side = hull[(i + 1) % hull.size()] - hull[i];
+    const float length = std::sqrt(side.dot(side));
+    if (length > 0) {
+      sides.push_back({hull[i], cv::Point2f(-side.y, side.x) / length});
     }
-    if (nearest <= nearly) {
-      outer.push_back(p);
+  }
+  std::vector<cv::Point2f> outer;
+  if (sides.empty()) {
+    return outer;
+  }
+  // Points come line by line, first and last end by turns: the side of the last but one is likely the next
+  // one's.
+  std::array<size_t, 2> likely{};
+  for (size_t k = 0; k < points.size(); ++k) {
+    size_t &begin = likely[k % 2];
+    for (size_t tried = 0, i = begin; tried < sides.size(); ++tried, i = i + 1 < sides.size() ? i + 1 : 0) {
+      if (std::abs(sides[i].normal.dot(points[k] - sides[i].from)) <= nearly) {
+        outer.push_back(points[k]);
+        begin = i;
+        break;
+      }
     }
   }
   return outer;
@@ -216,7 +230,7 @@ std::vector<cv::Point2f> vpChordShape::outerEnds(const vpLedRoi &roi, int sample
   }
   std::vector<cv::Point2f> hull;
   cv::convexHull(points, hull);
-  return onHull(points, hull, 0.7 + 0.01 * std::max(roi.box.width, roi.box.height));
+  return onHull(points, hull, 0.7f + 0.01f * static_cast<float>(std::max(roi.box.width, roi.box.height)));
 }
 
 double vpChordShape::ellipseMisfit(const std::vector<cv::Point2f> &points, const cv::Rect &box)
@@ -235,8 +249,9 @@ double vpChordShape::ellipseMisfit(const std::vector<cv::Point2f> &points, const
   for (const cv::Point2f &p : points) {
     const double x = 2 * (c * (p.x - e.center.x) + s * (p.y - e.center.y)) / e.size.width;
     const double y = 2 * (-s * (p.x - e.center.x) + c * (p.y - e.center.y)) / e.size.height;
-    const double rho = std::hypot(x, y);
-    const double gradient = 2 * std::hypot(x / e.size.width, y / e.size.height) / std::max(rho, 1e-9);
+    const double rho = std::sqrt(x * x + y * y), gradientU = x / e.size.width, gradientV = y / e.size.height;
+    const double gradient =
+        2 * std::sqrt(gradientU * gradientU + gradientV * gradientV) / std::max(rho, 1e-9);
     const double distance = (rho - 1) / std::max(gradient, 1e-9);
     sum += distance * distance;
   }
@@ -259,6 +274,11 @@ double vpChordShape::rectangleMisfit(const std::vector<cv::Point2f> &points)
     sum += inside * inside;
   }
   return std::sqrt(sum / points.size());
+}
+
+double vpChordShape::mostLampness(int ends)
+{
+  return 1 - 4.0 / (4.0 + ends);
 }
 
 vpChordShape::Score vpChordShape::score(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines,
@@ -289,10 +309,10 @@ vpChordShape::Score vpChordShape::score(const vpLedRoi &roi, const cv::Mat_<unsi
   if (convex <= 0) {
     return score;
   }
-  const std::vector<cv::Point2f> outer = onHull(points, hull, 0.7 + 0.01 * size);
+  const std::vector<cv::Point2f> outer = onHull(points, hull, static_cast<float>(0.7 + 0.01 * size));
   const double tolerance = 0.6 + 0.02 * size;
   const double misfit = std::min(ellipseMisfit(outer, roi.box), rectangleMisfit(outer)) / tolerance;
-  const double evidence = 1 - 4.0 / (4.0 + outer.size());
+  const double evidence = mostLampness(static_cast<int>(outer.size()));
   score.lampness = std::exp(-0.5 * (misfit * misfit + hollow)) * convex * roundness(roi) * evidence *
                    (0.4 + 0.6 * score.edge.sharpness());
   return score;

@@ -50,6 +50,9 @@ struct Score {
   std::vector<float> shortfall; // of each chord: how far it ends inside the convex hull, in tolerances
 };
 
+//! Of a region with that many chord ends near its hull, however good a lamp it is.
+double mostLampness(int ends);
+
 Score score(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark);
 
 Edge edge(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark);

@@ -16,7 +16,8 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-double median(std::vector<double> values)
+//! Reorders them.
+double median(std::vector<double> &values)
 {
   if (values.empty()) {
     return 0;
@@ -26,96 +27,168 @@ double median(std::vector<double> values)
   return *middle;
 }
 
+//! What is left of sums of products of a and b once a mean and a multiple of D are taken off both.
+double without(double ab, double aD, double bD, double DD)
+{
+  return ab - aD * bD / DD;
+}
+
+const double lit = 0.6, unlit = 0.4; // shares of a pixel that an end's pixels have to reach beyond
 } // namespace
 
+//! Samples of a line about an edge.
 template <class Model>
-std::optional<typename vpEdgeFit<Model>::End> vpEdgeFit<Model>::lineEnd(int line, double first,
-                                                                        double last) const
-{
-  const int from = std::max(0, static_cast<int>(std::ceil(first)));
-  const int to = std::min(m_lines.cols - 1, static_cast<int>(std::floor(last)));
-  if (to - from < 3) {
-    return std::nullopt;
+struct vpEdgeFit<Model>::Stretch {
+  int from, to;
+
+  Stretch(double first, double last, int samples)
+      : from(std::max(0, static_cast<int>(std::ceil(first)))),
+        to(std::min(samples - 1, static_cast<int>(std::floor(last))))
+  {
   }
-  // Columns: 1, D; then the derivatives of D by the model's parameters and the blur.
+  bool enough() const { return to - from >= 3; }
+};
+
+//! Where the outline crosses the line.
+template <class Model>
+void vpEdgeFit<Model>::addCrossing(int line, const Stretch &pixels, double crossing)
+{
+  if (!pixels.enough()) {
+    return;
+  }
+  End end;
+  typename Model::Vector derivative;
+  Eigen::Vector2d normal;
+  m_model.distance({crossing, m_v[line]}, derivative, normal);
   const unsigned char *row = m_lines[line];
-  const int n = to - from + 1;
-  Eigen::Matrix<double, Eigen::Dynamic, N> J(n, N);
-  Eigen::VectorXd D(n);
-  Eigen::VectorXd I(n);
-  Eigen::VectorXd slope(n);
-  for (int i = 0; i < n; ++i) {
+  const int n = pixels.to - pixels.from + 1;
+  double most = 0, least = 1;
+  // Sums of grey value I, share D, its derivatives by shift S and blur B, and of their products.
+  double I = 0, D = 0, S = 0, B = 0, II = 0, DI = 0, DD = 0, SI = 0, SD = 0, SS = 0, BI = 0, BD = 0, BS = 0,
+         BB = 0;
+  for (int i = pixels.from; i <= pixels.to; ++i) {
+    const vpPixelEdge edge = vpPixelEdge::at(m_model.distance({m_u[i], m_v[line]}), normal, m_blur);
+    const double grey = row[i], share = edge.share, byShift = edge.byShift, byBlur = edge.byBlur;
+    most = std::max(most, share);
+    least = std::min(least, share);
+    I += grey;
+    D += share;
+    S += byShift;
+    B += byBlur;
+    II += grey * grey;
+    DI += share * grey;
+    DD += share * share;
+    SI += byShift * grey;
+    SD += byShift * share;
+    SS += byShift * byShift;
+    BI += byBlur * grey;
+    BD += byBlur * share;
+    BS += byBlur * byShift;
+    BB += byBlur * byBlur;
+  }
+  if (most < lit || least > unlit) {
+    return; // the edge itself is not in it
+  }
+  const double perPixel = 1.0 / n;
+  auto centred = [perPixel](double ab, double a, double b) { return ab - a * b * perPixel; };
+  DD = centred(DD, D, D);
+  DI = centred(DI, D, I);
+  SD = centred(SD, S, D);
+  BD = centred(BD, B, D);
+  const double a = DI / DD;
+  end.line = line;
+  end.outward = -derivative;
+  end.amplitude = a;
+  end.background = (I - a * D) * perPixel;
+  end.squares = std::max(0.0, without(centred(II, I, I), DI, DI, DD));
+  end.pixels = n;
+  end.shiftShift = a * a * without(centred(SS, S, S), SD, SD, DD);
+  end.shiftBlur = a * a * without(centred(BS, B, S), BD, SD, DD);
+  end.blurBlur = a * a * without(centred(BB, B, B), BD, BD, DD);
+  end.shift = a * without(centred(SI, S, I), SD, DI, DD);
+  end.blur = a * without(centred(BI, B, I), BD, DI, DD);
+  m_ends.push_back(end);
+}
+
+//! Where the outline touches the line, or comes near: its direction changes from pixel to pixel.
+template <class Model>
+void vpEdgeFit<Model>::addAlong(int line, const Stretch &pixels)
+{
+  if (!pixels.enough()) {
+    return;
+  }
+  // Columns: 1, D, I, S; then the derivatives of D by the model's parameters and the blur.
+  constexpr int one = 0, share = 1, grey = 2, shift = 3, first = 4, all = first + N;
+  using Column = Eigen::Matrix<double, all, 1>;
+  Eigen::Matrix<double, all, all> sums = Eigen::Matrix<double, all, all>::Zero();
+  const unsigned char *row = m_lines[line];
+  double most = 0, least = 1;
+  for (int i = pixels.from; i <= pixels.to; ++i) {
     typename Model::Vector derivative;
     Eigen::Vector2d normal;
-    const double d = m_model.distance({m_u[from + i], m_v[line]}, derivative, normal);
+    const double d = m_model.distance({m_u[i], m_v[line]}, derivative, normal);
     const vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur);
-    D(i) = edge.share;
-    J.row(i) << -edge.byShift * derivative.transpose(), edge.byBlur;
-    I(i) = row[from + i];
-    slope(i) = edge.byShift;
+    most = std::max(most, edge.share);
+    least = std::min(least, edge.share);
+    Column column;
+    column << 1, edge.share, row[i], edge.byShift, -edge.byShift * derivative, edge.byBlur;
+    sums.template selfadjointView<Eigen::Lower>().rankUpdate(column);
   }
-  if (D.maxCoeff() < 0.6 || D.minCoeff() > 0.4) {
-    return std::nullopt; // the edge itself is not in it
+  if (most < lit || least > unlit) {
+    return;
   }
-  const double meanI = I.mean();
-  const double meanD = D.mean();
-  I.array() -= meanI;
-  D.array() -= meanD;
-  slope.array() -= slope.mean();
-  J.rowwise() -= J.colwise().mean().eval();
-  const double DD = D.squaredNorm();
+  sums.template triangularView<Eigen::StrictlyUpper>() = sums.transpose();
+  const Column mean = sums.col(one) / sums(one, one);
+  sums -= sums(one, one) * mean * mean.transpose();
+  const double DD = sums(share, share), a = sums(share, grey) / DD;
+  const Column ofShare = sums.col(share) / DD;
+  sums -= DD * ofShare * ofShare.transpose();
   End end;
-  end.amplitude = D.dot(I) / DD;
-  end.background = meanI - end.amplitude * meanD;
-  const Eigen::VectorXd residual = I - end.amplitude * D;
-  J -= D * (D.transpose() * J / DD);
-  J *= end.amplitude;
-  slope = end.amplitude * (slope - D * (D.dot(slope) / DD));
-  end.H = J.transpose() * J;
-  end.g = J.transpose() * residual;
-  end.squares = residual.squaredNorm();
-  end.pixels = n;
-  end.offsetWeight = slope.squaredNorm();
-  end.offset = slope.dot(residual) / std::max(end.offsetWeight, 1e-12);
-  return end;
+  end.line = line;
+  end.amplitude = a;
+  end.background = mean(grey) - a * mean(share);
+  end.squares = std::max(0.0, sums(grey, grey));
+  end.pixels = pixels.to - pixels.from + 1;
+  end.shiftShift = a * a * sums(shift, shift);
+  end.shift = a * sums(shift, grey);
+  end.along = static_cast<int>(m_along.size());
+  m_along.push_back({a * a * sums.template bottomRightCorner<N, N>(), a * sums.col(grey).template tail<N>()});
+  m_ends.push_back(end);
 }
 
 template <class Model>
-void vpEdgeFit<Model>::collect(int line, double v, std::vector<End> &ends) const
+void vpEdgeFit<Model>::addEnds(int line)
 {
+  const double v = m_v[line];
   double outerFirst, outerLast, first, last, innerFirst, innerLast;
   if (!m_model.stretch(v, 0, first, last) || !m_model.stretch(v, m_reach, outerFirst, outerLast)) {
     return;
   }
   // Where the outline crosses the line at a slant, the same distance from the edge is a longer stretch.
-  auto add = [&](double from, double to) {
-    if (!m_model.crossedWell(v, from <= first, to >= last)) {
-      return;
-    }
-    if (auto end = lineEnd(line, from, to)) {
-      ends.push_back(*end);
-    }
-  };
   if (m_model.stretch(v, -m_reach, innerFirst, innerLast) && innerLast - innerFirst > 1) {
-    add(outerFirst, innerFirst);
-    add(innerLast, outerLast);
-  } else {
-    add(outerFirst, outerLast);
+    if (m_model.crossedWell(v, true, false)) {
+      addCrossing(line, Stretch(outerFirst, innerFirst, m_lines.cols), first);
+    }
+    if (m_model.crossedWell(v, false, true)) {
+      addCrossing(line, Stretch(innerLast, outerLast, m_lines.cols), last);
+    }
+  } else if (m_model.crossedWell(v, true, true)) {
+    addAlong(line, Stretch(outerFirst, outerLast, m_lines.cols));
   }
 }
 
 template <class Model>
-std::vector<typename vpEdgeFit<Model>::End> vpEdgeFit<Model>::lineEnds() const
+void vpEdgeFit<Model>::findEnds()
 {
   double top, bottom;
   m_model.vertical(top, bottom);
-  std::vector<End> ends;
+  m_ends.clear();
+  m_along.clear();
   const int from = std::max(0, static_cast<int>(std::floor(top)) - 1);
   const int to = std::min(m_lines.rows - 1, static_cast<int>(std::ceil(bottom)) + 1);
   for (int line = from; line <= to; ++line) {
-    collect(line, m_v[line], ends);
+    addEnds(line);
   }
-  return ends;
 }
 
 /*!
@@ -123,53 +196,66 @@ std::vector<typename vpEdgeFit<Model>::End> vpEdgeFit<Model>::lineEnds() const
   is more; an end that would move the edge far beyond what the others want is let go of.
 */
 template <class Model>
-void vpEdgeFit<Model>::assemble(const std::vector<End> &ends, Eigen::MatrixXd &H, Eigen::VectorXd &g)
+void vpEdgeFit<Model>::assemble(Equations &equations)
 {
-  std::vector<double> variances, unshifted, offsets, backgrounds;
-  for (const End &end : ends) {
-    variances.push_back(end.squares / std::max(1, end.pixels - 2));
+  m_variances.clear();
+  m_sorted.clear();
+  for (const End &end : m_ends) {
+    m_variances.push_back(end.squares / std::max(1, end.pixels - 2));
     // What the end's own best shift leaves: from a start a pixel off, all ends misfit, and none is dark for
     // it.
-    const double left = end.squares - end.offset * end.offset * end.offsetWeight;
-    unshifted.push_back(std::max(0.0, left) / std::max(1, end.pixels - 3));
+    const double left = end.squares - end.offset() * end.shift;
+    m_sorted.push_back(std::max(0.0, left) / std::max(1, end.pixels - 3));
   }
-  const double noise = std::max(median(unshifted), 0.05); // 8 bits round: 1/12, less where all is dark
-  auto lit = [&](size_t i) { return ends[i].amplitude > 0 && ends[i].offsetWeight > 4 * noise; };
-  for (size_t i = 0; i < ends.size(); ++i) {
-    if (lit(i)) {
-      offsets.push_back(std::abs(ends[i].offset));
-      backgrounds.push_back(ends[i].background);
+  const double noise = std::max(median(m_sorted), 0.05); // 8 bits round: 1/12, less where all is dark
+  auto shines = [noise](const End &end) { return end.amplitude > 0 && end.shiftShift > 4 * noise; };
+  m_sorted.clear();
+  for (const End &end : m_ends) {
+    if (shines(end)) {
+      m_sorted.push_back(std::abs(end.offset()));
     }
   }
-  const double scale = 1.4826 * std::max(median(offsets), 0.02);
-  H = Eigen::MatrixXd::Zero(N, N);
-  g = Eigen::VectorXd::Zero(N);
+  const double scale = 1.4826 * std::max(median(m_sorted), 0.02);
+  equations = Equations();
+  m_sorted.clear();
   double squares = 0, weights = 0, pixels = 0, chiSquare = 0, members = 0;
-  for (size_t i = 0; i < ends.size(); ++i) {
-    // An end is no outlier for being noisy: its own doubt widens the limit.
-    const double own = std::sqrt(std::max(variances[i], noise) / std::max(ends[i].offsetWeight, 1e-12));
-    const double z = ends[i].offset / (4.685 * std::max(scale, own));
-    if (!lit(i)) {
+  for (size_t i = 0; i < m_ends.size(); ++i) {
+    const End &end = m_ends[i];
+    if (!shines(end)) {
       continue;
     }
-    chiSquare += ends[i].squares;
-    pixels += ends[i].pixels;
+    m_sorted.push_back(end.background);
+    chiSquare += end.squares;
+    pixels += end.pixels;
+    // An end is no outlier for being noisy: its own doubt widens the limit.
+    const double variance = std::max(m_variances[i], noise), own = std::sqrt(variance / end.shiftShift);
+    const double z = end.offset() / (4.685 * std::max(scale, own));
     if (std::abs(z) >= 1) {
       continue;
     }
-    const double tukey = (1 - z * z) * (1 - z * z);
-    const double weight = tukey / std::max(variances[i], noise);
-    H += weight * ends[i].H;
-    g += weight * ends[i].g;
-    squares += weight * ends[i].offsetWeight * ends[i].offset * ends[i].offset;
-    weights += weight * ends[i].offsetWeight;
+    const double tukey = (1 - z * z) * (1 - z * z), weight = tukey / variance;
+    if (end.along >= 0) {
+      equations.H += weight * m_along[static_cast<size_t>(end.along)].H;
+      equations.g += weight * m_along[static_cast<size_t>(end.along)].g;
+    } else {
+      const typename Model::Vector outward = weight * end.outward;
+      equations.H.template topLeftCorner<N - 1, N - 1>() +=
+          end.shiftShift * outward * end.outward.transpose();
+      equations.H.template topRightCorner<N - 1, 1>() += end.shiftBlur * outward;
+      equations.H.template bottomLeftCorner<1, N - 1>() += end.shiftBlur * outward.transpose();
+      equations.H(N - 1, N - 1) += weight * end.blurBlur;
+      equations.g.template head<N - 1>() += end.shift * outward;
+      equations.g(N - 1) += weight * end.blur;
+    }
+    squares += weight * end.shift * end.offset();
+    weights += weight * end.shiftShift;
     members += tukey;
   }
   m_residual = weights > 0 ? std::sqrt(squares / weights) : 0;
   // Ends scatter more than their pixels' noise says where the edge is no Gaussian: the covariance is to say
   // so, and the fewer they are the less they know of their own scatter.
   m_inflation = members > N ? std::max(1.0, squares / (members - N)) * (1 + 2 / (members - N)) : 3;
-  m_background = median(backgrounds);
+  m_background = median(m_sorted);
   m_noise = std::sqrt(noise);
   m_misfit = pixels > 0 ? chiSquare / pixels : 0;
   m_pixels = pixels;
@@ -188,6 +274,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterat
   static const double sharpest = 0.1; // px of blur; the pixels themselves hide anything sharper
   Eigen::MatrixXd H, data;
   Eigen::VectorXd g;
+  Equations equations;
   const double radius = m_model.radius();
   const double widest = 0.15 * radius + 1;
   const Eigen::Vector2d start = m_model.centre();
@@ -195,12 +282,14 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterat
   int soft = 0;
   for (int i = 0; i < maxIterations; ++i) {
     m_reach = std::clamp(3 * m_blur + 2, 4.0, std::max(4.0, 0.4 * m_model.radius()));
-    assemble(lineEnds(), H, g);
+    findEnds();
+    assemble(equations);
     soft = m_blur >= widest ? soft + 1 : 0;
     if (m_members < fewest || soft > 2) {
       return false;
     }
-    data = H;
+    data = H = equations.H;
+    g = equations.g;
     m_prior = m_model.addPrior(shapeSigma, H, g);
     H.diagonal().array() += 1e-9;
     Eigen::VectorXd step = H.ldlt().solve(g);
@@ -236,25 +325,23 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterat
 template <class Model>
 double vpEdgeFit<Model>::evenness() const
 {
-  double top, bottom, edges = 0, peaks = 0;
-  m_model.vertical(top, bottom);
-  const int from = std::max(0, static_cast<int>(std::ceil(top)));
-  const int to = std::min(m_lines.rows - 1, static_cast<int>(std::floor(bottom)));
-  for (int line = from; line <= to; ++line) {
-    std::vector<End> ends;
-    collect(line, m_v[line], ends);
+  double edges = 0, peaks = 0;
+  int line = -1;
+  double peak = 0; // of that line
+  for (const End &end : m_ends) {
     double first, last;
-    if (ends.empty() || !m_model.stretch(m_v[line], 0, first, last)) {
+    if (!m_model.stretch(m_v[end.line], 0, first, last)) {
       continue;
     }
-    const unsigned char *row = m_lines[line];
-    const int left = std::max(0, static_cast<int>(first));
-    const int right = std::min(m_lines.cols - 1, static_cast<int>(last) + 1);
-    const double peak = left < right ? *std::max_element(row + left, row + right + 1) : 0.0;
-    for (const End &end : ends) {
-      edges += std::max(0.0, end.amplitude);
-      peaks += std::max(0.0, peak - end.background);
+    if (end.line != line) {
+      line = end.line;
+      const unsigned char *row = m_lines[line];
+      const int left = std::max(0, static_cast<int>(first));
+      const int right = std::min(m_lines.cols - 1, static_cast<int>(last) + 1);
+      peak = left < right ? *std::max_element(row + left, row + right + 1) : 0.0;
     }
+    edges += std::max(0.0, end.amplitude);
+    peaks += std::max(0.0, peak - end.background);
   }
   return peaks > 0 ? edges / peaks : 0;
 }

@@ -5,7 +5,7 @@
 #ifndef vpEdgeFit_h
 #define vpEdgeFit_h
 
-#include <optional>
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
@@ -17,25 +17,37 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  One end of one line: the normal equations of the outline's parameters and the blur from its pixels, with the
-  end's own background and amplitude eliminated.
+  One end of one line, its own background and amplitude eliminated: how far it alone would move the edge, and
+  the normal equations of an outward shift of the edge there and of the blur.
 */
 template <int N>
 struct vpLineEnd {
-  Eigen::Matrix<double, N, N> H;
-  Eigen::Matrix<double, N, 1> g;
+  int line = 0;
+  Eigen::Matrix<double, N - 1, 1> outward =
+      Eigen::Matrix<double, N - 1, 1>::Zero(); // shift of the edge by the outline's parameters
+  double shiftShift = 0, shiftBlur = 0, blurBlur = 0, shift = 0, blur = 0;
+  int along = -1;     // of an edge that runs along the line: index of all its normal equations
   double squares = 0; // sum of squared residuals, grey levels
   int pixels = 0;
   double amplitude = 0;  // grey levels
   double background = 0; // grey value
-  double offset = 0;     // px, how far this end alone would move the edge outwards
-  double offsetWeight = 0;
+
+  //! px outwards.
+  double offset() const { return shift / std::max(shiftShift, 1e-12); }
+};
+
+//! Of the outline's parameters and the blur.
+template <int N>
+struct vpNormalEquations {
+  Eigen::Matrix<double, N, N> H = Eigen::Matrix<double, N, N>::Zero();
+  Eigen::Matrix<double, N, 1> g = Eigen::Matrix<double, N, 1>::Zero();
 };
 
 /*!
   Gauss-Newton fit of an outline to the grey values about the two ends of each lit line: the pixel-integrated
   blurred edge, its blur, and each end's own background and amplitude, so that it does not matter where the
-  stripes lie.
+  stripes lie. Where the outline crosses a line, the edge is taken as straight within its blur for the
+  derivatives, not for the distances, so that the minimum is the same.
 */
 template <class Model>
 class vpEdgeFit
@@ -43,6 +55,7 @@ class vpEdgeFit
 public:
   static constexpr int N = Model::parameters + 1;
   using End = vpLineEnd<N>;
+  using Equations = vpNormalEquations<N>;
 
   vpEdgeFit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
             const std::vector<double> &samplePositions, const Model &start)
@@ -62,10 +75,12 @@ public:
   double prior() const { return m_prior; }
 
 private:
-  std::optional<End> lineEnd(int line, double first, double last) const;
-  void collect(int line, double v, std::vector<End> &ends) const;
-  std::vector<End> lineEnds() const;
-  void assemble(const std::vector<End> &ends, Eigen::MatrixXd &H, Eigen::VectorXd &g);
+  struct Stretch;
+  void addCrossing(int line, const Stretch &pixels, double crossing);
+  void addAlong(int line, const Stretch &pixels);
+  void addEnds(int line);
+  void findEnds();
+  void assemble(Equations &equations);
 
   const cv::Mat_<unsigned char> &m_lines;
   const std::vector<double> &m_v;
@@ -82,6 +97,9 @@ private:
   double m_pixels = 0;
   double m_prior = 0;
   double m_members = 0; // ends that take part
+  std::vector<End> m_ends;
+  std::vector<Equations> m_along; // of ends that run along their line
+  std::vector<double> m_variances, m_sorted;
 };
 
 extern template class vpEdgeFit<vpEllipseModel>;

@@ -57,9 +57,7 @@ double typicalDistance(const vpEllipseModel &model, const std::vector<cv::Point2
 {
   std::vector<double> distances;
   for (const cv::Point2f &point : points) {
-    vpEllipseModel::Vector derivative;
-    Eigen::Vector2d normal;
-    distances.push_back(std::abs(model.distance({point.x, point.y}, derivative, normal)));
+    distances.push_back(std::abs(model.distance({point.x, point.y})));
   }
   const auto middle = distances.begin() + static_cast<long>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());

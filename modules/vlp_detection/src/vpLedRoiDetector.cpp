@@ -182,6 +182,16 @@ bool significant(const Group &group, double noise)
   return group.edge.step >= (least + single / std::sqrt(group.edge.ends)) * std::max(group.edge.noise, noise);
 }
 
+const double margin = 0.08; // of lampness, by which children have to be better: between equals the larger one
+
+//! Whether no children that higher levels may have will be chosen in its place: these have no more ends, and
+//! the number of ends bounds what any lampness can be.
+bool settled(const Group &group, double noise)
+{
+  return group.roi.lampness + margin >= vpChordShape::mostLampness(2 * group.roi.box.height) &&
+         significant(group, noise);
+}
+
 /*!
   The best regions at or above \e node: itself, or those of its children where these, weighted by their size,
   make better lamps. So a lamp beats its own fragments, and two lamps beat the blot that joins them. Regions
@@ -202,7 +212,6 @@ double bestBranch(const std::vector<Group> &tree, int node, double noise, std::v
       weight += sizeOf(tree[child].roi);
     }
   }
-  static const double margin = 0.08; // between equals the lower, larger one
   const bool stands = significant(group, noise);
   if (weight > 0 && (!stands || sum / weight > group.roi.lampness + margin)) {
     chosen.insert(chosen.end(), above.begin(), above.end());
@@ -339,8 +348,10 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
             *std::max_element(group.set.stripes.begin(), group.set.stripes.end(), [&](int a, int b) {
               return level.stripes[a].box.area() < level.stripes[b].box.area();
             });
+        const bool last = settled(group, dark.noise);
         for (int s : group.set.stripes) {
           level.stripes[s].group = node;
+          level.stripes[s].settled = last;
         }
         if (!first) {
           group.parent = below.stripes[level.stripes[largest].parent].group;

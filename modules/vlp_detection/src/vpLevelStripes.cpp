@@ -5,6 +5,7 @@
 #include "vpLevelStripes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <utility>
@@ -25,12 +26,30 @@ int brightest(const unsigned char *row, int first, int last)
   return *std::max_element(row + first, row + last + 1);
 }
 
-std::vector<Run> runsAbove(const cv::Mat_<unsigned char> &lines, double grey, const vpLevelStripes *below)
+//! The same of a whole block, which compilers make one instruction for many of.
+template <int block>
+int brightestOf(const unsigned char *row)
+{
+  unsigned char most = 0;
+  for (int i = 0; i < block; ++i) {
+    most = std::max(most, row[i]);
+  }
+  return most;
+}
+
+std::vector<Run> runsAbove(const cv::Mat_<unsigned char> &lines, double level, const vpLevelStripes *below)
 {
   std::vector<Run> runs;
+  const int grey = static_cast<int>(std::floor(level)); // above both or neither
   auto scan = [&](int y, int first, int last, int parent) {
     const unsigned char *row = lines[y];
+    static const int block = 64;
+    int next = first; // sample from which a block is to be looked at
     for (int x = first; x <= last; ++x) {
+      while (x >= next && x + block <= last && brightestOf<block>(row + x) <= grey) {
+        x += block;
+      }
+      next = x >= next ? x + block : next;
       if (row[x] <= grey) {
         continue;
       }
@@ -43,7 +62,9 @@ std::vector<Run> runsAbove(const cv::Mat_<unsigned char> &lines, double grey, co
   };
   if (below != nullptr) {
     for (const Run &run : below->runs) {
-      scan(run.line, run.first, run.last, run.stripe);
+      if (!below->stripes[run.stripe].settled) {
+        scan(run.line, run.first, run.last, run.stripe);
+      }
     }
   } else {
     for (int y = 0; y < lines.rows; ++y) {

@@ -26,8 +26,9 @@ struct vpLevelStripes {
   //! A connected region of pixels.
   struct Stripe {
     cv::Rect box;
-    int parent = -1; // stripe of the level below that holds it
-    int group = -1;  // node of the detector's tree
+    int parent = -1;      // stripe of the level below that holds it
+    int group = -1;       // node of the detector's tree
+    bool settled = false; // nothing is looked for in it at higher levels
     std::vector<int> runs;
 
     int lastLine() const { return box.y + box.height - 1; }
@@ -49,8 +50,8 @@ struct vpLevelStripes {
   std::vector<Stripe> stripes;
 
   vpLevelStripes() = default;
-  //! Stripes that have a pixel of at least \e leastPeak, looked for inside those of the level \e below;
-  //! everywhere, where that is null.
+  //! Stripes that have a pixel of at least \e leastPeak, looked for inside those of the level \e below that
+  //! are not settled; everywhere, where that is null.
   vpLevelStripes(const cv::Mat_<unsigned char> &lines, double grey, double leastPeak,
                  const vpLevelStripes *below);
 

@@ -5,6 +5,7 @@
 #ifndef vpOutlineModel_h
 #define vpOutlineModel_h
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -30,7 +31,14 @@ public:
   //! Best ellipse of points on the outline; a circle about \e box where they allow none.
   static vpEllipseModel from(const std::vector<cv::Point2f> &points, const cv::Rect &box);
 
-  //! Signed distance of \e x; its derivative by the parameters; the outline's outward normal nearest to x.
+  //! Signed distance of \e x.
+  double distance(const Eigen::Vector2d &x) const
+  {
+    const Eigen::Vector2d y = m_shape * (x - m_centre);
+    const double rho = std::max(y.norm(), 1e-6);
+    return (rho - 1) * rho / std::max((m_shape * y).norm(), 1e-12);
+  }
+  //! The same; its derivative by the parameters; the outline's outward normal nearest to x.
   double distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const;
   void advance(const Vector &step);
   //! Weak prior towards a circle, added to normal equations H step = g. Returns its own chi-square.
@@ -62,6 +70,7 @@ public:
 
   static vpQuadrilateralModel from(const std::vector<cv::Point2f> &points);
 
+  double distance(const Eigen::Vector2d &x) const;
   double distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const;
   void advance(const Vector &step);
   //! Prior towards a square seen from about below, weakest on its sides' ratio.

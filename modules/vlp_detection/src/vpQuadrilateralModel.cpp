@@ -46,6 +46,13 @@ vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &
   return model;
 }
 
+double vpQuadrilateralModel::distance(const Eigen::Vector2d &x) const
+{
+  Vector derivative;
+  Eigen::Vector2d normal;
+  return distance(x, derivative, normal);
+}
+
 double vpQuadrilateralModel::distance(const Eigen::Vector2d &x, Vector &derivative,
                                       Eigen::Vector2d &normal) const
 {

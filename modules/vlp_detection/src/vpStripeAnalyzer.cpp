@@ -37,25 +37,49 @@ int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &p
 }
 
 //! How bright the lamp is while it is lit, by these peaks of its profile, and what its stripes may then be.
-struct Start {
+class Start
+{
+public:
   vpWaveformFit::Settings settings;
   std::vector<double> envelope;
-  std::vector<vpStripeStarts::Sinusoid> candidates; // the best first
   std::vector<vpStripeStarts::Edge> edges;
   std::optional<vpStripeStarts::Pulses> pulses;
 
   Start(const vpStripeProfile &profile, const std::vector<size_t> &peaks, const vpStripeAnalyzer &analyzer)
+      : m_profile(&profile)
   {
-    static const size_t mostCandidates = 3;
     settings.modelError = analyzer.modelError;
     settings.exposureTolerance = analyzer.exposureTolerance;
     settings.envelopeOrder = envelopeOrderOf(profile, peaks);
     envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
-    candidates = vpStripeStarts::periodogram(profile, envelope, analyzer.modelError);
-    candidates.resize(std::min(candidates.size(), mostCandidates));
     edges = vpStripeStarts::edges(profile, envelope);
     pulses = vpStripeStarts::pulses(edges);
   }
+
+  //! Whether there are stripes at all: a sinusoid explains that much more than a level and a slope.
+  bool significant(double least)
+  {
+    const bool soon =
+        pulses &&
+        vpStripeStarts::sinusoidAt(*m_profile, envelope, settings.modelError, pulses->frequency).gain >=
+            least;
+    return soon || (!candidates().empty() && candidates().front().gain >= least);
+  }
+
+  //! The best first.
+  const std::vector<vpStripeStarts::Sinusoid> &candidates()
+  {
+    static const size_t most = 3;
+    if (!m_candidates) {
+      m_candidates = vpStripeStarts::periodogram(*m_profile, envelope, settings.modelError);
+      m_candidates->resize(std::min(m_candidates->size(), most));
+    }
+    return *m_candidates;
+  }
+
+private:
+  const vpStripeProfile *m_profile;
+  std::optional<std::vector<vpStripeStarts::Sinusoid>> m_candidates;
 };
 
 //! The best of several starts.
@@ -66,7 +90,7 @@ void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
   }
 }
 
-std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const Start &start)
+std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start)
 {
   std::optional<vpWaveformFit> best;
   if (start.pulses) {
@@ -79,7 +103,7 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const Start 
       keepBetter(best, std::move(fit));
     }
   }
-  for (const vpStripeStarts::Sinusoid &candidate : start.candidates) {
+  for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
     std::vector<double> exposures{profile.exposure};
     static const double longExposure =
         0.3; // periods: it may be misstated, and from there no way leads to sharp stripes
@@ -100,7 +124,7 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, const Start 
   return best;
 }
 
-std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, const Start &start)
+std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, Start &start)
 {
   vpWaveformFit::Settings settings = start.settings;
   settings.twoPulse = true;
@@ -116,7 +140,7 @@ std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, const S
     }
   }
   const double span = profile.time.back() - profile.time.front();
-  for (const vpStripeStarts::Sinusoid &candidate : start.candidates) {
+  for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
     for (int multiple = 1; multiple <= 2; ++multiple) { // the second harmonic may be the stronger
       const double f = candidate.frequency / multiple;
       if (f * std::abs(span) < 0.9) {
@@ -268,12 +292,12 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   features.stripes = static_cast<unsigned int>(peaks.size());
   features.modulation = depthOf(profile);
 
-  const Start byAll(profile, peaks, *this);
-  if (byAll.candidates.empty() || byAll.candidates.front().gain < minSignificance ||
-      features.modulation < minModulation || profile.agreement < minAgreement) {
+  Start byAll(profile, peaks, *this);
+  if (features.modulation < minModulation || profile.agreement < minAgreement ||
+      !byAll.significant(minSignificance)) {
     return features;
   }
-  const Start *start = &byAll;
+  Start *start = &byAll;
   std::optional<Start> byWhole;
   std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
   // A stripe at the lamp's end is dim because the lamp is, or because it is not whole.

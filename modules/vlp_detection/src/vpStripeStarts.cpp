@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 BEGIN_VISP_NAMESPACE
@@ -122,59 +121,6 @@ std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, con
     envelope.push_back(std::exp(std::clamp(log, -20.0, 20.0)));
   }
   return envelope;
-}
-
-std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripeProfile &profile,
-                                                                  const std::vector<double> &envelope,
-                                                                  double modelError)
-{
-  const auto n = static_cast<Eigen::Index>(profile.light.size());
-  const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
-  const double middle = 0.5 * (*first + *last);
-  const double span = (*last - *first) * n / std::max<double>(n - 1, 1);
-  Eigen::VectorXd q(n), w(n), y(n), t(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    t(i) = profile.time[i] - middle;
-    y(i) = 2 * t(i) / span;
-    const double scale = envelope[static_cast<size_t>(i)];
-    q(i) = profile.light[i] / scale;
-    // Were dark lines as certain as their noise is low, no sinusoid would fit stripes of a short pulse.
-    w(i) = 1 / std::hypot(profile.sigma[i] / scale, modelError * std::clamp(q(i), 0.3, 1.0));
-  }
-  Eigen::MatrixXd A(n, 4);
-  A.col(0) = w;
-  A.col(1) = w.cwiseProduct(y);
-  const Eigen::VectorXd b = w.cwiseProduct(q);
-  const Eigen::Matrix<double, Eigen::Dynamic, 2> plain = A.leftCols<2>();
-  const Eigen::Vector2d plainFit = (plain.transpose() * plain).ldlt().solve(plain.transpose() * b);
-  const double without = (b - plain * plainFit).squaredNorm();
-
-  const double lowest = 0.7 / span;
-  const double highest = 0.5 * n / span;
-  const double step = 0.1 / span;
-  std::vector<Sinusoid> all;
-  for (double f = lowest; f <= highest + 0.5 * step; f += step) {
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double angle = 2 * M_PI * f * t(i);
-      A(i, 2) = w(i) * std::cos(angle);
-      A(i, 3) = w(i) * std::sin(angle);
-    }
-    const Eigen::Matrix4d normal = A.transpose() * A + 1e-9 * Eigen::Matrix4d::Identity();
-    const Eigen::Vector4d right = A.transpose() * b;
-    const Eigen::Vector4d x = normal.ldlt().solve(right);
-    const double gain = without - (b.squaredNorm() - x.dot(right));
-    all.push_back({f, std::atan2(x(3), x(2)) / (2 * M_PI), gain});
-  }
-  std::vector<Sinusoid> maxima;
-  for (size_t i = 0; i < all.size(); ++i) {
-    if ((i == 0 || all[i].gain >= all[i - 1].gain) &&
-        (i + 1 == all.size() || all[i].gain > all[i + 1].gain)) {
-      maxima.push_back(all[i]);
-    }
-  }
-  std::sort(maxima.begin(), maxima.end(),
-            [](const Sinusoid &a, const Sinusoid &b) { return a.gain > b.gain; });
-  return maxima;
 }
 
 std::vector<vpStripeStarts::Edge> vpStripeStarts::edges(const vpStripeProfile &profile,

@@ -48,6 +48,10 @@ struct Sinusoid {
 std::vector<Sinusoid> periodogram(const vpStripeProfile &profile, const std::vector<double> &envelope,
                                   double modelError);
 
+//! The same at one frequency, Hz.
+Sinusoid sinusoidAt(const vpStripeProfile &profile, const std::vector<double> &envelope, double modelError,
+                    double frequency);
+
 struct Edge {
   double time; // s, from the middle of the profile
   bool rising;

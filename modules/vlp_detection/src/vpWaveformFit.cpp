@@ -14,80 +14,70 @@
 
 BEGIN_VISP_NAMESPACE
 
-namespace
-{
-
-//! A wave that is 1 in the first \e duty of each period, at \e x periods: its integral from 0, itself, and
-//! how the integral grows with the duty.
-struct Pulse {
-  double integral, level, byDuty;
-  Pulse(double x, double duty)
-  {
-    const double whole = std::floor(x), begun = x - whole;
-    const bool lit = begun < duty;
-    integral = whole * duty + (lit ? begun : duty);
-    level = lit ? 1 : 0;
-    byDuty = whole + (lit ? 0 : 1);
-  }
-};
-
-//! A pulse averaged over \e width periods about \e x, and its derivatives.
-struct Averaged {
-  double value, byX, byWidth, byDuty;
-  Averaged(double x, double width, double duty)
-  {
-    const double w = std::max(width, 1e-6);
-    const Pulse to(x + 0.5 * w, duty), from(x - 0.5 * w, duty);
-    value = (to.integral - from.integral) / w;
-    byX = (to.level - from.level) / w;
-    byWidth = (0.5 * (to.level + from.level) - value) / w;
-    byDuty = (to.byDuty - from.byDuty) / w;
-  }
-};
-
-} // namespace
-
 vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
                              const std::vector<double> &envelope)
     : m_profile(&profile), m_settings(settings),
-      m_linear(2 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2)), m_given(envelope)
+      m_linear(2 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2))
 {
   const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
-  const size_t n = profile.light.size();
-  m_middle = 0.5 * (*first + *last);
+  const auto n = static_cast<Eigen::Index>(profile.light.size());
+  const double middle = 0.5 * (*first + *last);
   m_half = std::max(0.5 * (*last - *first), 1e-12);
   m_line = 2 * m_half / std::max<double>(1, static_cast<double>(n) - 1);
-  for (size_t i = 0; i < n; ++i) {
-    // A dark line has some light of its neighbours, by blur and compression.
-    static const double spill = 0.01; // share of theirs, standard deviation
-    const double missed = std::hypot(m_settings.modelError * profile.light[i], spill * m_given[i]);
-    m_weight.push_back(1 / (profile.sigma[i] * profile.sigma[i] + missed * missed));
-  }
-  m_wave.resize(n);
-  m_derivative.resize(n);
+  m_time = Eigen::Map<const Eigen::ArrayXd>(profile.time.data(), n) - middle;
+  m_light = Eigen::Map<const Eigen::ArrayXd>(profile.light.data(), n);
+  m_given = Eigen::Map<const Eigen::ArrayXd>(envelope.data(), n);
+  // A dark line has some light of its neighbours, by blur and compression.
+  static const double spill = 0.01; // share of theirs, standard deviation
+  m_weight = (Eigen::Map<const Eigen::ArrayXd>(profile.sigma.data(), n).square() +
+              (m_settings.modelError * m_light).square() + (spill * m_given).square())
+                 .inverse();
   // A dark lamp is about as dark as its surroundings, which the profile has no more.
   static const double glow = 0.05; // share of the lit lamp's light, standard deviation
-  const double dark = std::max(1.0, glow * *std::max_element(m_given.begin(), m_given.end()));
+  const double dark = std::max(1.0, glow * m_given.maxCoeff());
   m_darkness = 1 / (dark * dark);
+  prepareSums();
 }
 
-double vpWaveformFit::waveform(const Vector &x, double t, Vector &derivative) const
+//! What of the normal equations of offset and envelope does not depend on the wave.
+void vpWaveformFit::prepareSums()
 {
-  const double turns = x(frequency) * t + x(phase);
-  const double width = x(exposure) * x(frequency);
-  const double own = m_settings.twoPulse ? 0.5 : 1; // share of the duty that is one pulse's
-  const Averaged one(turns, width, own * x(duty));
-  double value = one.value, byX = one.byX, byWidth = one.byWidth, byDuty = own * one.byDuty, byDifference = 0;
-  if (m_settings.twoPulse) {
-    const Averaged two(turns - x(phaseDifference), width, own * x(duty));
-    value += two.value;
-    byX += two.byX;
-    byWidth += two.byWidth;
-    byDuty += own * two.byDuty;
-    byDifference = -two.byX;
+  const Eigen::Index bends = m_linear - 1;
+  m_powers.resize(m_time.size(), bends);
+  m_ofWave.resize(m_time.size(), 2 * bends);
+  m_ofSquare.resize(m_time.size(), 2 * bends - 1);
+  const Eigen::ArrayXd y = m_time / m_half;
+  m_powers.col(0) = m_given;
+  m_ofSquare.col(0) = m_weight * m_given.square();
+  for (Eigen::Index k = 1; k < bends; ++k) {
+    m_powers.col(k) = m_powers.col(k - 1).array() * y;
   }
-  derivative << byX * t + byWidth * x(exposure), byX, byDuty, byWidth * x(frequency), byDifference;
-  return value;
+  for (Eigen::Index p = 1; p < m_ofSquare.cols(); ++p) {
+    m_ofSquare.col(p) = m_ofSquare.col(p - 1).array() * y;
+  }
+  for (Eigen::Index k = 0; k < bends; ++k) {
+    m_ofWave.col(k) = m_weight * m_powers.col(k).array();
+    m_ofWave.col(bends + k) = m_ofWave.col(k).array() * m_light;
+  }
+}
+
+//! The lamp's light at each time, averaged over the exposure, and its derivatives; both pulses', the
+//! second's.
+void vpWaveformFit::evaluateWave(const Vector &x, const Eigen::ArrayXd &time, vpPulseWave &wave,
+                                 vpPulseWave &second) const
+{
+  const double width = x(exposure) * x(frequency);
+  if (!m_settings.twoPulse) {
+    wave.evaluate(time, x(frequency), x(phase), width, x(duty));
+    return;
+  }
+  static const double own = 0.5; // share of the duty that is one pulse's
+  wave.evaluate(time, x(frequency), x(phase), width, own * x(duty));
+  second.evaluate(time, x(frequency), x(phase) - x(phaseDifference), width, own * x(duty));
+  wave.value += second.value;
+  wave.byTurn += second.byTurn;
+  wave.byWidth += second.byWidth;
+  wave.byDuty = own * (wave.byDuty + second.byDuty);
 }
 
 /*!
@@ -132,36 +122,29 @@ void vpWaveformFit::keepPossible(Vector &x) const
   }
 }
 
-double vpWaveformFit::cost(const Vector &x, bool derivatives)
+double vpWaveformFit::cost(const Vector &x)
 {
   // Normal equations of offset and envelope; the envelope's bends are unlikely to be sharp.
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, mostLinear, mostLinear>;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, mostLinear, 1>;
-  const size_t n = m_wave.size();
-  Small A = Small::Zero(m_linear, m_linear);
-  Column b = Column::Zero(m_linear);
-  double squares = 0;
-  Vector derivative;
-  std::array<double, mostLinear> row{};
-  row[0] = 1;
-  for (size_t i = 0; i < n; ++i) {
-    const double t = m_profile->time[i] - m_middle, w = m_weight[i], light = m_profile->light[i];
-    m_wave[i] = waveform(x, t, derivative);
-    if (derivatives) {
-      m_derivative[i] = derivative;
-    }
-    row[1] = m_given[i] * m_wave[i];
-    for (int k = 2; k < m_linear; ++k) {
-      row[k] = row[k - 1] * t / m_half;
-    }
-    for (int k = 0; k < m_linear; ++k) {
-      for (int l = 0; l <= k; ++l) {
-        A(k, l) += w * row[k] * row[l];
-      }
-      b(k) += w * row[k] * light;
-    }
-    squares += w * light * light;
+  evaluateWave(x, m_time, m_wave, m_second);
+  const Eigen::Index bends = m_linear - 1;
+  Small A(m_linear, m_linear);
+  Column b(m_linear);
+  A(0, 0) = m_weight.sum();
+  b(0) = (m_weight * m_light).sum();
+  for (Eigen::Index k = 0; k < bends; ++k) {
+    A(k + 1, 0) = m_ofWave.col(k).dot(m_wave.value.matrix());
+    b(k + 1) = m_ofWave.col(bends + k).dot(m_wave.value.matrix());
   }
+  m_square = m_wave.value.square();
+  for (Eigen::Index p = 0; p < m_ofSquare.cols(); ++p) {
+    const double sum = m_ofSquare.col(p).dot(m_square.matrix());
+    for (Eigen::Index k = std::max<Eigen::Index>(0, p - bends + 1); 2 * k <= p; ++k) {
+      A(p - k + 1, k + 1) = sum;
+    }
+  }
+  const double squares = (m_weight * m_light.square()).sum();
   A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
   A(0, 0) += m_darkness;
   for (int k = 2; k < m_linear; ++k) {
@@ -171,7 +154,7 @@ double vpWaveformFit::cost(const Vector &x, bool derivatives)
   Column c = A.ldlt().solve(b);
   // No light is less than none: were it, a lamp's dark pulse blurred by a long exposure would do for a bright
   // one.
-  const double least = -1 - 0.02 * std::abs(c(1)) * m_given[m_given.size() / 2];
+  const double least = -1 - 0.02 * std::abs(c(1)) * m_given(m_given.size() / 2);
   if (c(0) < least) {
     const Column fixed = b - least * A.col(0);
     c.tail(m_linear - 1) =
@@ -194,32 +177,43 @@ double vpWaveformFit::cost(const Vector &x, bool derivatives)
 
 //! Of the nonlinear parameters, the linear ones eliminated; at the place of the latest cost(), with
 //! derivatives.
-void vpWaveformFit::normalEquations(Matrix &H, Vector &g) const
+void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
 {
-  constexpr int all = parameters + mostLinear;
-  using Full = Eigen::Matrix<double, all, all>;
-  Full N = Full::Zero();
-  Eigen::Matrix<double, all, 1> r = Eigen::Matrix<double, all, 1>::Zero(), J;
-  for (size_t i = 0; i < m_wave.size(); ++i) {
-    const double y = (m_profile->time[i] - m_middle) / m_half;
-    double envelope = 0, power = m_given[i];
-    J.setZero();
-    J(parameters) = 1;
-    for (int k = 1; k < m_linear; ++k) {
-      envelope += m_coefficient[static_cast<size_t>(k)] * power;
-      J(parameters + k) = m_wave[i] * power;
-      power *= y;
+  // Columns: the nonlinear parameters, the offset, the envelope's coefficients.
+  constexpr int most = parameters + mostLinear;
+  const Eigen::Index bends = m_linear - 1, all = parameters + m_linear;
+  m_jacobian.resize(m_time.size(), all);
+  const Eigen::ArrayXd light = envelope();
+  m_residual = m_light - m_coefficient[0] - light * m_wave.value;
+  m_jacobian.col(phase) = light * m_wave.byTurn;
+  m_jacobian.col(exposure) = light * m_wave.byWidth;
+  m_jacobian.col(frequency) =
+      m_jacobian.col(phase).array() * m_time + m_x(exposure) * m_jacobian.col(exposure).array();
+  m_jacobian.col(exposure) *= m_x(frequency);
+  m_jacobian.col(duty) = light * m_wave.byDuty;
+  if (m_settings.twoPulse) {
+    m_jacobian.col(phaseDifference) = -light * m_second.byTurn;
+  } else {
+    m_jacobian.col(phaseDifference).setZero();
+  }
+  m_jacobian.col(parameters).setOnes();
+  for (Eigen::Index k = 0; k < bends; ++k) {
+    m_jacobian.col(parameters + 1 + k) = m_powers.col(k).array() * m_wave.value;
+  }
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most> N(all, all);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> r(all);
+  for (Eigen::Index k = 0; k < all; ++k) {
+    m_column = m_weight * m_jacobian.col(k).array();
+    r(k) = m_column.matrix().dot(m_residual.matrix());
+    for (Eigen::Index l = 0; l <= k; ++l) {
+      N(k, l) = N(l, k) = m_column.matrix().dot(m_jacobian.col(l));
     }
-    J.head<parameters>() = envelope * m_derivative[i];
-    const double residual = m_profile->light[i] - m_coefficient[0] - envelope * m_wave[i];
-    N.noalias() += m_weight[i] * J * J.transpose();
-    r += m_weight[i] * residual * J;
   }
   N(parameters, parameters) += m_darkness;
-  N.diagonal().tail<mostLinear>().array() += 1e-9 * N(parameters, parameters) + 1e-12;
-  const Eigen::Matrix<double, mostLinear, mostLinear> L = N.bottomRightCorner<mostLinear, mostLinear>();
-  const Eigen::Matrix<double, mostLinear, parameters> C = N.bottomLeftCorner<mostLinear, parameters>();
-  H = N.topLeftCorner<parameters, parameters>() - C.transpose() * L.ldlt().solve(C);
+  N.diagonal().tail(m_linear).array() += 1e-9 * N(parameters, parameters) + 1e-12;
+  const auto C = N.bottomLeftCorner(m_linear, parameters);
+  H = N.topLeftCorner<parameters, parameters>() -
+      C.transpose() * N.bottomRightCorner(m_linear, m_linear).ldlt().solve(C);
   g = r.head<parameters>(); // the linear ones are at their best: their gradient is 0
 }
 
@@ -253,33 +247,31 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
 bool vpWaveformFit::bendEnvelope()
 {
   static const double most = 5;
-  std::vector<double> bent = m_given;
-  for (size_t i = 0; i < bent.size(); ++i) {
-    const double factor = envelope(i) / (m_given[i] * m_coefficient[1]);
-    if (!(factor > 1 / most && factor < most)) {
-      return false;
-    }
-    bent[i] *= factor;
+  const Eigen::ArrayXd bent = envelope() / m_coefficient[1], factor = bent / m_given;
+  if (!(factor > 1 / most && factor < most).all()) {
+    return false;
   }
   m_given = bent;
+  prepareSums();
   return true;
 }
 
-//! At line \e i, as it was fitted, grey levels.
-double vpWaveformFit::envelope(size_t i) const
+//! At each line, as it was fitted, grey levels.
+Eigen::ArrayXd vpWaveformFit::envelope() const
 {
-  const double y = (m_profile->time[i] - m_middle) / m_half;
-  double sum = 0;
-  for (int k = m_linear - 1; k >= 1; --k) {
-    sum = sum * y + m_coefficient[static_cast<size_t>(k)];
-  }
-  return sum * m_given[i];
+  return (m_powers * Eigen::Map<const Eigen::VectorXd>(m_coefficient.data() + 1, m_linear - 1)).array();
+}
+
+//! Grey levels, at each line.
+Eigen::ArrayXd vpWaveformFit::residuals() const
+{
+  return m_light - m_coefficient[0] - envelope() * m_wave.value;
 }
 
 //! Levenberg and Marquardt's method from m_x.
 void vpWaveformFit::descend(int iterations)
 {
-  m_cost = cost(m_x, true);
+  m_cost = cost(m_x);
   double damping = 1e-3;
   Vector step = Vector::Ones(); // what a parameter may well be off by
   step(phase) = step(duty) = step(phaseDifference) = m_line * m_x(frequency);
@@ -301,7 +293,7 @@ void vpWaveformFit::descend(int iterations)
       damped.diagonal() += damping * (m_curvature.diagonal() + step.cwiseAbs2().cwiseInverse());
       Vector x = m_x + damped.ldlt().solve(g);
       keepPossible(x);
-      const double c = x.allFinite() ? cost(x, true) : m_cost;
+      const double c = x.allFinite() ? cost(x) : m_cost;
       if (c < m_cost) {
         gain = m_cost - c;
         m_cost = c;
@@ -316,7 +308,7 @@ void vpWaveformFit::descend(int iterations)
       break;
     }
   }
-  m_cost = cost(m_x, true);
+  m_cost = cost(m_x);
 }
 
 //! Chi-square of a pulse and an exposure, and not each the other.
@@ -354,23 +346,14 @@ bool vpWaveformFit::preferStatedExposure()
 int vpWaveformFit::degreesOfFreedom() const
 {
   const int free = (m_settings.twoPulse ? parameters : parameters - 1) + m_linear;
-  return std::max(1, static_cast<int>(m_wave.size()) - free);
+  return std::max(1, static_cast<int>(m_time.size()) - free);
 }
 
 double vpWaveformFit::misfit() const
 {
-  const auto n = static_cast<double>(m_wave.size());
-  double mean = 0;
-  for (double light : m_profile->light) {
-    mean += light / n;
-  }
-  double power = 0, left = 0;
-  for (size_t i = 0; i < m_wave.size(); ++i) {
-    const double residual = m_profile->light[i] - m_coefficient[0] - envelope(i) * m_wave[i];
-    const double noise = m_profile->sigma[i];
-    left += residual * residual - noise * noise;
-    power += (m_profile->light[i] - mean) * (m_profile->light[i] - mean);
-  }
+  const auto noise = Eigen::Map<const Eigen::ArrayXd>(m_profile->sigma.data(), m_time.size());
+  const double left = (residuals().square() - noise.square()).sum(),
+               power = (m_light - m_light.mean()).square().sum();
   return std::max(0.0, left) / std::max(power, 1e-9);
 }
 

@@ -12,6 +12,8 @@
 #include <Eigen/Core>
 #include <visp3/vlp_detection/vpStripeAnalyzer.h>
 
+#include "vpPulseWave.h"
+
 BEGIN_VISP_NAMESPACE
 
 /*!
@@ -96,14 +98,16 @@ private:
   Posterior sampled(const Posterior &from, int samples, double temperature);
   vpDutySlice slice(double atDuty);
 
-  //! The lamp's light at one line, averaged over the exposure, and its derivatives.
-  double waveform(const Vector &x, double t, Vector &derivative) const;
-  //! Cost where offset and envelope fit best. Fills m_wave, and m_derivative where \e derivatives.
-  double cost(const Vector &x, bool derivatives);
-  void normalEquations(Matrix &H, Vector &g) const;
+  void prepareSums();
+  void evaluateWave(const Vector &x, const Eigen::ArrayXd &time, vpPulseWave &wave,
+                    vpPulseWave &second) const;
+  //! Cost where offset and envelope fit best. Fills m_wave.
+  double cost(const Vector &x);
+  void normalEquations(Matrix &H, Vector &g);
   void descend(int iterations);
   bool bendEnvelope();
-  double envelope(size_t i) const;
+  Eigen::ArrayXd envelope() const;
+  Eigen::ArrayXd residuals() const;
   bool isFree(int parameter) const
   {
     switch (parameter) {
@@ -127,25 +131,32 @@ private:
   const vpStripeProfile *m_profile;
   Settings m_settings;
   int m_linear = 2;            // offset and envelope coefficients
-  double m_middle = 0;         // s
   double m_half = 1;           // s
   double m_line = 0;           // s, mean distance of the lines
   double m_startFrequency = 0; // Hz
   bool m_freeExposure = true;
   bool m_freeDuty = true;
-  double m_darkness = 0;        // 1 / variance of the offset about 0
-  std::vector<double> m_weight; // 1 / variance of each line
-  std::vector<double> m_given;  // envelope, grey levels
+  double m_darkness = 0; // 1 / variance of the offset about 0
+  // Of each line.
+  Eigen::ArrayXd m_time;                // s, from the profile's middle
+  Eigen::ArrayXd m_light;               // grey levels
+  Eigen::ArrayXd m_weight;              // 1 / variance
+  Eigen::ArrayXd m_given;               // envelope, grey levels
+  Eigen::MatrixXd m_powers;             // the same times powers of the time
+  Eigen::MatrixXd m_ofWave, m_ofSquare; // by which to sum the wave, its square
   Vector m_x = Vector::Zero();
   Vector m_sigma = Vector::Zero();
   Matrix m_curvature = Matrix::Zero(); // of half the cost, priors included
   double m_cost = 0;
   double m_chiSquare = 0; // of the profile alone
   double m_inflation = 1; // of all variances, by what the model leaves out
-  // Of the latest cost(): at each line the wave, its derivatives; and the linear parameters.
-  std::vector<double> m_wave;
-  std::vector<Vector> m_derivative;
+  // Of the latest cost(): at each line the wave (of two pulses: both, and the second one); the linear
+  // parameters.
+  vpPulseWave m_wave, m_second;
   std::array<double, mostLinear> m_coefficient{};
+  // Kept from step to step for their memory.
+  Eigen::ArrayXd m_square, m_column, m_residual;
+  Eigen::MatrixXd m_jacobian;
 };
 
 END_VISP_NAMESPACE

@@ -45,13 +45,9 @@ double normalQuantile(double p)
 void vpWaveformFit::integrate()
 {
   // What the model leaves out is alike on neighbouring lines: they say less together than each says alone.
-  double along = 0, before = 0;
-  for (size_t i = 0; i < m_wave.size(); ++i) {
-    const double residual =
-        std::sqrt(m_weight[i]) * (m_profile->light[i] - m_coefficient[0] - envelope(i) * m_wave[i]);
-    along += i > 0 ? residual * before : 0;
-    before = residual;
-  }
+  const Eigen::ArrayXd scaled = m_weight.sqrt() * residuals();
+  const Eigen::Index pairs = scaled.size() - 1;
+  const double along = (scaled.head(pairs) * scaled.tail(pairs)).sum();
   const double alike = along / std::max(m_chiSquare, 1e-12);
   const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
   // A variance told from few residuals may be any.
@@ -70,7 +66,7 @@ void vpWaveformFit::integrate()
     doubt(duty) = std::hypot(doubt(duty), spread);
   }
   m_sigma = (found.covariance.diagonal().cwiseMax(0) + doubt.cwiseAbs2()).cwiseSqrt();
-  m_cost = cost(m_x, true);
+  m_cost = cost(m_x);
 }
 
 //! About the minimum at m_x.
@@ -111,7 +107,7 @@ bool vpWaveformFit::hidesDuty() const
   }
   const double periods = m_x(frequency) * m_line; // of a line
   for (int pattern = 1; pattern <= longest; ++pattern) {
-    if (std::abs(std::remainder(pattern * periods, 1)) * static_cast<double>(m_wave.size()) < drift) {
+    if (std::abs(std::remainder(pattern * periods, 1)) * static_cast<double>(m_time.size()) < drift) {
       return true;
     }
   }
@@ -162,23 +158,14 @@ double vpWaveformFit::frequencyBound() const
 {
   // Of all lines that there might be: those that there are may all miss the brightest moment.
   static const int moments = 64;
-  double dark = std::numeric_limits<double>::infinity(), bright = -dark;
-  Vector derivative;
-  for (int k = 0; k < moments; ++k) {
-    const double light = waveform(m_x, k / (moments * m_x(frequency)), derivative);
-    dark = std::min(dark, light);
-    bright = std::max(bright, light);
-  }
-  double weight = 0, first = 0, second = 0; // moments of the information along the time
-  for (size_t i = 0; i < m_wave.size(); ++i) {
-    const double amplitude = 0.5 * (bright - dark) * envelope(i);
-    const double information = 0.5 * m_weight[i] * amplitude * amplitude / m_inflation;
-    const double t = m_profile->time[i] - m_middle;
-    weight += information;
-    first += information * t;
-    second += information * t * t;
-  }
-  const double sinusoid = 1 / (2 * M_PI * std::sqrt(std::max(second - first * first / weight, 1e-300)));
+  vpPulseWave period, second;
+  evaluateWave(m_x, Eigen::ArrayXd::LinSpaced(moments, 0, (moments - 1) / (moments * m_x(frequency))), period,
+               second);
+  const double swing = period.value.maxCoeff() - period.value.minCoeff();
+  const Eigen::ArrayXd information = 0.5 / m_inflation * m_weight * (0.5 * swing * envelope()).square();
+  const double weight = information.sum(), mean = (information * m_time).sum() / weight,
+               spread = (information * (m_time - mean).square()).sum();
+  const double sinusoid = 1 / (2 * M_PI * std::sqrt(std::max(spread, 1e-300)));
   // Edges that lie in a gap are anywhere in it; a line through all of them over the time has this slope's
   // error.
   const double gap = std::max(0.0, m_line - m_profile->exposure), f = m_x(frequency);
@@ -215,7 +202,7 @@ vpWaveformFit::Posterior vpWaveformFit::sampled(const Posterior &from, int sampl
     keepPossible(possible);
     if (possible == x) {
       places.push_back(x);
-      logs.push_back(-0.5 * cost(x, false) / temperature + 0.5 * normal.squaredNorm());
+      logs.push_back(-0.5 * cost(x) / temperature + 0.5 * normal.squaredNorm());
     }
   }
   if (places.empty()) {
