@@ -11,6 +11,8 @@
 #include <Eigen/LU>
 #include <visp3/vlp_core/vpPixelEdge.h>
 
+#include "vpEllipseEdges.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -33,25 +35,11 @@ double without(double ab, double aD, double bD, double DD)
   return ab - aD * bD / DD;
 }
 
-const double lit = 0.6, unlit = 0.4; // shares of a pixel that an end's pixels have to reach beyond
 } // namespace
-
-//! Samples of a line about an edge.
-template <class Model>
-struct vpEdgeFit<Model>::Stretch {
-  int from, to;
-
-  Stretch(double first, double last, int samples)
-      : from(std::max(0, static_cast<int>(std::ceil(first)))),
-        to(std::min(samples - 1, static_cast<int>(std::floor(last))))
-  {
-  }
-  bool enough() const { return to - from >= 3; }
-};
 
 //! Where the outline crosses the line.
 template <class Model>
-void vpEdgeFit<Model>::addCrossing(int line, const Stretch &pixels, double crossing)
+void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double crossing)
 {
   if (!pixels.enough()) {
     return;
@@ -59,15 +47,16 @@ void vpEdgeFit<Model>::addCrossing(int line, const Stretch &pixels, double cross
   End end;
   typename Model::Vector derivative;
   Eigen::Vector2d normal;
-  m_model.distance({crossing, m_v[line]}, derivative, normal);
-  const unsigned char *row = m_lines[line];
+  m_model.distance({crossing, (*m_v)[line]}, derivative, normal);
+  const unsigned char *row = (*m_lines)[line];
   const int n = pixels.to - pixels.from + 1;
   double most = 0, least = 1;
   // Sums of grey value I, share D, its derivatives by shift S and blur B, and of their products.
   double I = 0, D = 0, S = 0, B = 0, II = 0, DI = 0, DD = 0, SI = 0, SD = 0, SS = 0, BI = 0, BD = 0, BS = 0,
          BB = 0;
   for (int i = pixels.from; i <= pixels.to; ++i) {
-    const vpPixelEdge edge = vpPixelEdge::at(m_model.distance({m_u[i], m_v[line]}), normal, m_blur);
+    const vpPixelEdge edge =
+        vpPixelEdge::at(m_model.distance({(*m_u)[i], (*m_v)[line]}), normal, m_blur, vpEdgeLimits::sharp);
     const double grey = row[i], share = edge.share, byShift = edge.byShift, byBlur = edge.byBlur;
     most = std::max(most, share);
     least = std::min(least, share);
@@ -86,7 +75,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const Stretch &pixels, double cross
     BS += byBlur * byShift;
     BB += byBlur * byBlur;
   }
-  if (most < lit || least > unlit) {
+  if (most < vpEdgeLimits::lit || least > vpEdgeLimits::unlit) {
     return; // the edge itself is not in it
   }
   const double perPixel = 1.0 / n;
@@ -112,7 +101,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const Stretch &pixels, double cross
 
 //! Where the outline touches the line, or comes near: its direction changes from pixel to pixel.
 template <class Model>
-void vpEdgeFit<Model>::addAlong(int line, const Stretch &pixels)
+void vpEdgeFit<Model>::addAlong(int line, const vpLineStretch &pixels)
 {
   if (!pixels.enough()) {
     return;
@@ -121,20 +110,20 @@ void vpEdgeFit<Model>::addAlong(int line, const Stretch &pixels)
   constexpr int one = 0, share = 1, grey = 2, shift = 3, first = 4, all = first + N;
   using Column = Eigen::Matrix<double, all, 1>;
   Eigen::Matrix<double, all, all> sums = Eigen::Matrix<double, all, all>::Zero();
-  const unsigned char *row = m_lines[line];
+  const unsigned char *row = (*m_lines)[line];
   double most = 0, least = 1;
   for (int i = pixels.from; i <= pixels.to; ++i) {
     typename Model::Vector derivative;
     Eigen::Vector2d normal;
-    const double d = m_model.distance({m_u[i], m_v[line]}, derivative, normal);
-    const vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur);
+    const double d = m_model.distance({(*m_u)[i], (*m_v)[line]}, derivative, normal);
+    const vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur, vpEdgeLimits::sharp);
     most = std::max(most, edge.share);
     least = std::min(least, edge.share);
     Column column;
     column << 1, edge.share, row[i], edge.byShift, -edge.byShift * derivative, edge.byBlur;
     sums.template selfadjointView<Eigen::Lower>().rankUpdate(column);
   }
-  if (most < lit || least > unlit) {
+  if (most < vpEdgeLimits::lit || least > vpEdgeLimits::unlit) {
     return;
   }
   sums.template triangularView<Eigen::StrictlyUpper>() = sums.transpose();
@@ -157,24 +146,32 @@ void vpEdgeFit<Model>::addAlong(int line, const Stretch &pixels)
 }
 
 template <class Model>
-void vpEdgeFit<Model>::addEnds(int line)
+void vpEdgeFit<Model>::addEnds(int from, int to)
 {
-  const double v = m_v[line];
-  double outerFirst, outerLast, first, last, innerFirst, innerLast;
-  if (!m_model.stretch(v, 0, first, last) || !m_model.stretch(v, m_reach, outerFirst, outerLast)) {
-    return;
-  }
-  // Where the outline crosses the line at a slant, the same distance from the edge is a longer stretch.
-  if (m_model.stretch(v, -m_reach, innerFirst, innerLast) && innerLast - innerFirst > 1) {
-    if (m_model.crossedWell(v, true, false)) {
-      addCrossing(line, Stretch(outerFirst, innerFirst, m_lines.cols), first);
+  for (int line = from; line <= to; ++line) {
+    const double v = (*m_v)[line];
+    double outerFirst, outerLast, first, last, innerFirst, innerLast;
+    if (!m_model.stretch(v, 0, first, last) || !m_model.stretch(v, m_reach, outerFirst, outerLast)) {
+      continue;
     }
-    if (m_model.crossedWell(v, false, true)) {
-      addCrossing(line, Stretch(innerLast, outerLast, m_lines.cols), last);
+    // Where the outline crosses the line at a slant, the same distance from the edge is a longer stretch.
+    if (m_model.stretch(v, -m_reach, innerFirst, innerLast) && innerLast - innerFirst > 1) {
+      if (m_model.crossedWell(v, true, false)) {
+        addCrossing(line, vpLineStretch(outerFirst, innerFirst, m_lines->cols), first);
+      }
+      if (m_model.crossedWell(v, false, true)) {
+        addCrossing(line, vpLineStretch(innerLast, outerLast, m_lines->cols), last);
+      }
+    } else if (m_model.crossedWell(v, true, true)) {
+      addAlong(line, vpLineStretch(outerFirst, outerLast, m_lines->cols));
     }
-  } else if (m_model.crossedWell(v, true, true)) {
-    addAlong(line, Stretch(outerFirst, outerLast, m_lines.cols));
   }
+}
+
+template <>
+void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to)
+{
+  vpEllipseEdges(*m_lines, *m_v, *m_u, m_model, m_blur, m_reach).find(from, to, m_ends, m_along);
 }
 
 template <class Model>
@@ -185,10 +182,8 @@ void vpEdgeFit<Model>::findEnds()
   m_ends.clear();
   m_along.clear();
   const int from = std::max(0, static_cast<int>(std::floor(top)) - 1);
-  const int to = std::min(m_lines.rows - 1, static_cast<int>(std::ceil(bottom)) + 1);
-  for (int line = from; line <= to; ++line) {
-    addEnds(line);
-  }
+  const int to = std::min(m_lines->rows - 1, static_cast<int>(std::ceil(bottom)) + 1);
+  addEnds(from, to);
 }
 
 /*!
@@ -267,10 +262,10 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   that outgrows any lens, a middle that wanders off or stays unknown.
 */
 template <class Model>
-bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations)
+bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations, double likelyBlur)
 {
   static const double fewest = 3;     // ends
-  static const double still = 3e-4;   // px
+  static const double still = 1e-3;   // px
   static const double sharpest = 0.1; // px of blur; the pixels themselves hide anything sharper
   Eigen::MatrixXd H, data;
   Eigen::VectorXd g;
@@ -278,7 +273,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterat
   const double radius = m_model.radius();
   const double widest = 0.15 * radius + 1;
   const Eigen::Vector2d start = m_model.centre();
-  m_blur = std::clamp(0.03 * radius, 0.7, 4.0);
+  m_blur = likelyBlur > 0 ? std::clamp(likelyBlur, sharpest, widest) : std::clamp(0.03 * radius, 0.7, 4.0);
   int soft = 0;
   for (int i = 0; i < maxIterations; ++i) {
     m_reach = std::clamp(3 * m_blur + 2, 4.0, std::max(4.0, 0.4 * m_model.radius()));
@@ -330,14 +325,14 @@ double vpEdgeFit<Model>::evenness() const
   double peak = 0; // of that line
   for (const End &end : m_ends) {
     double first, last;
-    if (!m_model.stretch(m_v[end.line], 0, first, last)) {
+    if (!m_model.stretch((*m_v)[end.line], 0, first, last)) {
       continue;
     }
     if (end.line != line) {
       line = end.line;
-      const unsigned char *row = m_lines[line];
+      const unsigned char *row = (*m_lines)[line];
       const int left = std::max(0, static_cast<int>(first));
-      const int right = std::min(m_lines.cols - 1, static_cast<int>(last) + 1);
+      const int right = std::min(m_lines->cols - 1, static_cast<int>(last) + 1);
       peak = left < right ? *std::max_element(row + left, row + right + 1) : 0.0;
     }
     edges += std::max(0.0, end.amplitude);

@@ -6,6 +6,7 @@
 #define vpEdgeFit_h
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,6 +16,24 @@
 #include "vpOutlineModel.h"
 
 BEGIN_VISP_NAMESPACE
+
+namespace vpEdgeLimits
+{
+constexpr float lit = 0.6f, unlit = 0.4f; // shares of a pixel that the pixels of an end have to reach beyond
+constexpr double sharp = 0.5;             // px of blur up to which a pixel's square is no Gaussian
+} // namespace vpEdgeLimits
+
+//! Samples of a line about an edge.
+struct vpLineStretch {
+  int from, to;
+
+  vpLineStretch(double first, double last, int samples)
+      : from(std::max(0, static_cast<int>(std::ceil(first)))),
+        to(std::min(samples - 1, static_cast<int>(std::floor(last))))
+  {
+  }
+  bool enough() const { return to - from >= 3; }
+};
 
 /*!
   One end of one line, its own background and amplitude eliminated: how far it alone would move the edge, and
@@ -59,11 +78,12 @@ public:
 
   vpEdgeFit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
             const std::vector<double> &samplePositions, const Model &start)
-      : m_lines(lines), m_v(linePositions), m_u(samplePositions), m_model(start)
+      : m_lines(&lines), m_v(&linePositions), m_u(&samplePositions), m_model(start)
   {
   }
 
-  bool run(const cv::Rect &box, double shapeSigma, int maxIterations);
+  //! \param likelyBlur px, to begin with; 0: one that suits the size.
+  bool run(const cv::Rect &box, double shapeSigma, int maxIterations, double likelyBlur = 0);
   vpOutlineFit result() const;
   //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc.
   double evenness() const;
@@ -75,16 +95,15 @@ public:
   double prior() const { return m_prior; }
 
 private:
-  struct Stretch;
-  void addCrossing(int line, const Stretch &pixels, double crossing);
-  void addAlong(int line, const Stretch &pixels);
-  void addEnds(int line);
+  void addCrossing(int line, const vpLineStretch &pixels, double crossing);
+  void addAlong(int line, const vpLineStretch &pixels);
+  void addEnds(int from, int to);
   void findEnds();
   void assemble(Equations &equations);
 
-  const cv::Mat_<unsigned char> &m_lines;
-  const std::vector<double> &m_v;
-  const std::vector<double> &m_u;
+  const cv::Mat_<unsigned char> *m_lines;
+  const std::vector<double> *m_v;
+  const std::vector<double> *m_u;
   Model m_model;
   double m_blur = 1.5;
   double m_reach = 0; // px on either side of the edge
@@ -99,9 +118,12 @@ private:
   double m_members = 0; // ends that take part
   std::vector<End> m_ends;
   std::vector<Equations> m_along; // of ends that run along their line
+  std::vector<int> m_touched;     // lines
   std::vector<double> m_variances, m_sorted;
 };
 
+template <>
+void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to);
 extern template class vpEdgeFit<vpEllipseModel>;
 extern template class vpEdgeFit<vpQuadrilateralModel>;
 

@@ -286,11 +286,14 @@ bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRo
   return any;
 }
 
-vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi) const
+vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
 {
   vpLampObservation lamp;
   const vpOutlineFit fit =
-      outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(), roi);
+      outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(), roi, m_blur);
+  if (fit.outline.shape == vpLampOutline::Shape::ellipse) {
+    m_blur = fit.blur;
+  }
   lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit, roi));
   measureArea(picture, roi, lamp);
   lamp.outline = picture.transposed ? swapped(fit.outline) : fit.outline;

@@ -112,7 +112,8 @@ void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines,
 
 vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
                                   const std::vector<double> &linePositions,
-                                  const std::vector<double> &samplePositions, const vpLedRoi &roi) const
+                                  const std::vector<double> &samplePositions, const vpLedRoi &roi,
+                                  double likelyBlur) const
 {
   vpOutlineFit best;
   best.outline = boxOf(roi);
@@ -127,7 +128,14 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
   const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
   vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start);
-  const bool isEllipse = ellipse.run(roi.box, shapeSigma, maxIterations) && holds(ellipse.result(), roi);
+  auto fits = [&](double blur) {
+    return ellipse.run(roi.box, shapeSigma, maxIterations, blur) && holds(ellipse.result(), roi);
+  };
+  bool isEllipse = likelyBlur > 0 && fits(likelyBlur);
+  if (!isEllipse) {
+    ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, start);
+    isEllipse = fits(0);
+  }
   if (isEllipse) {
     best = ellipse.result();
     addElongationDoubt(best.outline, roi, ellipse.prior());

@@ -51,13 +51,15 @@ public:
   void vertical(double &top, double &bottom) const;
   double radius() const;
   Eigen::Vector2d centre() const { return m_centre; }
+  //! Symmetric; |shape (x - centre)| = 1 on the outline.
+  const Eigen::Matrix2d &shape() const { return m_shape; }
   bool plausible(const cv::Rect &box) const;
   //! \param covariance Of the parameters, px and log units.
   vpLampOutline outline(const Eigen::MatrixXd &covariance) const;
 
 private:
   Eigen::Vector2d m_centre;
-  Eigen::Matrix2d m_shape; // symmetric; |m_shape (x - m_centre)| = 1 on the outline
+  Eigen::Matrix2d m_shape;
 };
 
 //! Four straight sides, each by the angle of its outward normal and its distance from a fixed point inside.

@@ -5,6 +5,7 @@
 #include <visp3/vlp_detection/vpStripeAnalyzer.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -63,24 +64,29 @@ public:
   Falloff() = default;
   Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, const vpOutlineFit &fit);
 
-  //! Light at a sample, as a share of that at the lamp's middle.
-  double at(int sample, int line) const
+  //! Light at the samples of a chord, as a share of that at the lamp's middle.
+  void along(const Chord &chord, std::vector<double> &shares) const
   {
-    if (!m_uneven) {
-      return 1;
+    shares.assign(static_cast<size_t>(chord.last - chord.first + 1), 1);
+    for (int x = chord.first; m_uneven && x <= chord.last; ++x) {
+      const double place = std::min(squaredRadius(x, chord.line) * perUnit, nodes - 1.001);
+      const auto node = static_cast<size_t>(place);
+      shares[static_cast<size_t>(x - chord.first)] =
+          m_shares[node] + (place - static_cast<double>(node)) * (m_shares[node + 1] - m_shares[node]);
     }
-    const double r2 = squaredRadius(sample, line);
-    return std::exp((m_a + m_b * r2) * r2);
   }
 
 private:
+  static constexpr size_t nodes = 256;
+  static constexpr double perUnit = 200; // of the squared radius, which inside the lamp is 1 at most
+
   double squaredRadius(int sample, int line) const
   {
     return (m_toDisc * (Eigen::Vector2d(sample, line) - m_centre)).squaredNorm();
   }
 
   bool m_uneven = false;
-  double m_a = 0, m_b = 0;
+  std::array<double, nodes> m_shares{}; // by squared radius
   Eigen::Vector2d m_centre = Eigen::Vector2d::Zero();
   Eigen::Matrix2d m_toDisc = Eigen::Matrix2d::Identity(); // from the outline to the unit circle
 };
@@ -96,11 +102,15 @@ Falloff::Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> 
   static const double usual = 1;        // of a and b, standard deviation
   static const int enough = 64;         // samples of a line
   const double noise = std::max(fit.noise, 0.3), least = std::max(8 * noise, 6.0);
+  std::array<double, 256> logs{}; // of the light of each grey value
+  for (size_t grey = 0; grey < logs.size(); ++grey) {
+    logs[grey] = std::log(std::max(static_cast<double>(grey) - fit.background, least));
+  }
   Eigen::Matrix2d H = Eigen::Matrix2d::Identity() / (usual * usual);
   Eigen::Vector2d g = Eigen::Vector2d::Zero();
   for (const Chord &chord : chords) {
     const int step = std::max(1, (chord.last - chord.first) / enough);
-    double weights = 0, meanLog = 0, logs = 0;
+    double weights = 0, sum = 0;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero(), byLog = Eigen::Vector2d::Zero();
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
     for (int x = chord.first; x <= chord.last; x += step) {
@@ -109,93 +119,108 @@ Falloff::Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> 
         continue;
       }
       const double weight = 1 / (noise * noise / (light * light) + roughness * roughness);
-      const double r2 = squaredRadius(x, chord.line), log = std::log(light);
+      const double r2 = squaredRadius(x, chord.line), log = logs[lines(chord.line, x)];
       const Eigen::Vector2d powers(r2, r2 * r2);
       weights += weight;
-      logs += weight * log;
+      sum += weight * log;
       mean += weight * powers;
       byLog += weight * log * powers;
       squares += weight * powers * powers.transpose();
     }
     if (weights > 0) {
-      meanLog = logs / weights;
       mean /= weights;
       H += squares - weights * mean * mean.transpose();
-      g += byLog - weights * meanLog * mean;
+      g += byLog - sum * mean;
     }
   }
   const Eigen::Vector2d solution = H.inverse() * g;
   static const double most = 4; // of the logarithm at the rim: what goes farther is no lamp's falloff
   m_uneven = solution.allFinite() && std::abs(solution.sum()) < most && solution.norm() < 3 * most;
-  m_a = solution.x();
-  m_b = solution.y();
+  for (size_t node = 0; m_uneven && node < nodes; ++node) {
+    const double r2 = static_cast<double>(node) / perUnit;
+    m_shares[node] = std::exp((solution.x() + solution.y() * r2) * r2);
+  }
 }
 
-//! Least squares of a line's brightness at the lamp's middle, from what is not white, or else from all.
-void addLine(vpStripeProfile &profile, const cv::Mat_<unsigned char> &lines, const Chord &chord,
-             const Falloff &falloff, const vpOutlineFit &fit)
+//! Sums over some samples of a line, for least squares of its brightness at the lamp's middle.
+struct Brightness {
+  double light = 0, squares = 0;
+  void add(double share, double seen)
+  {
+    light += share * seen;
+    squares += share * share;
+  }
+  double value() const { return light / squares; }
+};
+
+//! A line's brightness, from what is not white, or else from all.
+void addLine(vpStripeProfile &profile, const unsigned char *row, const Chord &chord,
+             const std::vector<double> &shares, const vpOutlineFit &fit)
 {
-  double light = 0, squares = 0, clippedLight = 0, clippedSquares = 0;
-  int unclipped = 0;
+  Brightness unclipped, clipped;
+  int count = 0; // of the unclipped
   for (int x = chord.first; x <= chord.last; ++x) {
-    const double dimmed = falloff.at(x, chord.line), seen = lines(chord.line, x) - fit.background;
-    unclipped += lines(chord.line, x) < white;
-    (lines(chord.line, x) < white ? light : clippedLight) += dimmed * seen;
-    (lines(chord.line, x) < white ? squares : clippedSquares) += dimmed * dimmed;
+    const bool whole = row[x] < white;
+    (whole ? unclipped : clipped).add(shares[static_cast<size_t>(x - chord.first)], row[x] - fit.background);
+    count += whole;
   }
   static const int enough = 4; // samples
-  if (unclipped < enough) {
-    light += clippedLight;
-    squares += clippedSquares;
+  if (count < enough) {
+    unclipped.light += clipped.light;
+    unclipped.squares += clipped.squares;
   }
-  profile.light.push_back(light / squares);
-  profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(squares));
+  profile.light.push_back(unclipped.value());
+  profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(unclipped.squares));
 }
 
 /*!
   Correlation over the lines of what their left and right halves show, pixel noise taken off: 1 where light
   that varies from line to line does so on the whole of each line, as a shutter's stripes do.
 */
-double agreementOfHalves(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords,
-                         const Falloff &falloff, const vpOutlineFit &fit)
+class Agreement
 {
-  static const int fewest = 8; // samples of a line
-  struct Sums {
-    double weight = 0, left = 0, right = 0, leftLeft = 0, rightRight = 0, leftRight = 0, noise = 0;
-  } sums;
-  for (const Chord &chord : chords) {
+public:
+  void add(const unsigned char *row, const Chord &chord, const std::vector<double> &shares,
+           const vpOutlineFit &fit)
+  {
+    static const int fewest = 8; // samples of a line
     const int count = chord.last - chord.first + 1, half = count / 2;
     if (count < fewest) {
-      continue;
+      return;
     }
     auto meanOf = [&](int first) {
-      double light = 0, squares = 0;
+      Brightness sum;
       for (int x = first; x < first + half; ++x) {
-        const double dimmed = falloff.at(x, chord.line);
-        light += dimmed * (lines(chord.line, x) - fit.background);
-        squares += dimmed * dimmed;
+        sum.add(shares[static_cast<size_t>(x - chord.first)], row[x] - fit.background);
       }
-      return light / squares;
+      return sum.value();
     };
     const double left = meanOf(chord.first), right = meanOf(chord.last - half + 1), weight = count;
-    sums.weight += weight;
-    sums.left += weight * left;
-    sums.right += weight * right;
-    sums.leftLeft += weight * left * left;
-    sums.rightRight += weight * right * right;
-    sums.leftRight += weight * left * right;
-    sums.noise += weight * fit.noise * fit.noise / half;
+    m_weight += weight;
+    m_left += weight * left;
+    m_right += weight * right;
+    m_leftLeft += weight * left * left;
+    m_rightRight += weight * right * right;
+    m_leftRight += weight * left * right;
+    m_noise += weight * fit.noise * fit.noise / half;
   }
-  if (!(sums.weight > 0)) {
-    return 1;
+
+  double value() const
+  {
+    if (!(m_weight > 0)) {
+      return 1;
+    }
+    const double left = m_left / m_weight, right = m_right / m_weight, noise = m_noise / m_weight;
+    const double leftVariance = m_leftLeft / m_weight - left * left - noise,
+                 rightVariance = m_rightRight / m_weight - right * right - noise;
+    const double common = m_leftRight / m_weight - left * right;
+    return common / std::sqrt(std::max(leftVariance * rightVariance, 1e-12));
   }
-  const double left = sums.left / sums.weight, right = sums.right / sums.weight,
-               noise = sums.noise / sums.weight;
-  const double leftVariance = sums.leftLeft / sums.weight - left * left - noise,
-               rightVariance = sums.rightRight / sums.weight - right * right - noise;
-  const double common = sums.leftRight / sums.weight - left * right;
-  return common / std::sqrt(std::max(leftVariance * rightVariance, 1e-12));
-}
+
+private:
+  double m_weight = 0, m_left = 0, m_right = 0, m_leftLeft = 0, m_rightRight = 0, m_leftRight = 0,
+         m_noise = 0;
+};
 
 //! Whether most of some line is white.
 bool hasWhiteLines(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
@@ -244,11 +269,15 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   const Falloff falloff = ellipse && !soft ? Falloff(lines, chords, fit) : Falloff();
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
+  Agreement agreement;
+  std::vector<double> shares;
   for (const Chord &chord : chords) {
+    falloff.along(chord, shares);
     profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
-    addLine(profile, lines, chord, falloff, fit);
+    addLine(profile, lines[chord.line], chord, shares, fit);
+    agreement.add(lines[chord.line], chord, shares, fit);
   }
-  profile.agreement = agreementOfHalves(lines, chords, falloff, fit);
+  profile.agreement = agreement.value();
   return profile;
 }
 

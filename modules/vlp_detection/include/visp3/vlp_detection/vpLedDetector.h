@@ -69,12 +69,13 @@ public:
 private:
   bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
   bool joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
-  vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi) const;
+  vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi);
 
   vpVlpRig m_rig;
   vpLineTiming m_timing;
   std::vector<vpLampObservation> m_observations;
   vpRowTimeError m_rowTimeError;
+  double m_blur = 0; // px, of the latest outline: mostly that of the lens
 };
 
 END_VISP_NAMESPACE

@@ -46,11 +46,13 @@ public:
 
   /*!
     \param lines The picture as read out. \param linePositions, samplePositions True positions of its lines
-    and samples (vpLineTiming), pixels. \param roi Where the lamp is. \return The ellipse or quadrilateral
+    and samples (vpLineTiming), pixels. \param roi Where the lamp is. \param likelyBlur px, that of other
+    lamps of the same lens, from which it is sooner found; 0: not known. \return The ellipse or quadrilateral
     that is likelier; a region where neither fits.
   */
   vpOutlineFit fit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
-                   const std::vector<double> &samplePositions, const vpLedRoi &roi) const;
+                   const std::vector<double> &samplePositions, const vpLedRoi &roi,
+                   double likelyBlur = 0) const;
 };
 
 END_VISP_NAMESPACE

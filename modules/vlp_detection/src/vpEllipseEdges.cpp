@@ -1,0 +1,402 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpEllipseEdges.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <visp3/vlp_core/vpSimdClones.h>
+
+#include "vpLanes.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi" // vectors are passed within this file only
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+using vpLanes::all;
+using vpLanes::Floats;
+using vpLanes::Integers;
+constexpr int lanes = vpLanes::count;
+
+//! Of an ellipse |M x| = 1 about its middle.
+struct Ellipse {
+  float uu, uv, vv; // M
+  float radius, blur, reach;
+  double u, v; // px, its middle
+};
+
+//! Where lines meet the ellipse grown by some distance, px from its middle.
+struct Chord {
+  Floats first, last;
+  Integers meets;
+};
+
+VP_LANES_INLINE Chord chordOf(const Ellipse &ellipse, const Floats &v, float distance)
+{
+  const float a = ellipse.uu * ellipse.uu + ellipse.uv * ellipse.uv,
+              perV = ellipse.uu * ellipse.uv + ellipse.uv * ellipse.vv,
+              perV2 = ellipse.uv * ellipse.uv + ellipse.vv * ellipse.vv,
+              grown = 1 + distance / ellipse.radius;
+  const Floats b = perV * v, discriminant = b * b - a * (perV2 * v * v - grown * grown);
+  const Integers meets = (discriminant > 0) & Integers(all(grown) > 0);
+  const Floats half = vpLanes::root(vpLanes::select(meets, discriminant, all(0)));
+  return {(-b - half) / a, (-b + half) / a, meets};
+}
+
+//! A pixel as the ellipse sees it.
+struct Place {
+  Floats x0, x1;           // M x
+  Floats rho, perSlope;    // |M x|, 1 / |M M x|
+  Floats normalU, normalV; // of the outline nearest to it
+  Floats distance;         // px outside of it, to first order
+};
+
+VP_LANES_INLINE Place placeOf(const Ellipse &ellipse, const Floats &u, const Floats &v)
+{
+  Place at;
+  at.x0 = ellipse.uu * u + ellipse.uv * v;
+  at.x1 = ellipse.uv * u + ellipse.vv * v;
+  const Floats gradientU = ellipse.uu * at.x0 + ellipse.uv * at.x1,
+               gradientV = ellipse.uv * at.x0 + ellipse.vv * at.x1;
+  at.rho = vpLanes::root(at.x0 * at.x0 + at.x1 * at.x1);
+  at.perSlope = 1 / vpLanes::most(vpLanes::root(gradientU * gradientU + gradientV * gradientV), all(1e-12f));
+  at.normalU = gradientU * at.perSlope;
+  at.normalV = gradientV * at.perSlope;
+  at.distance = (at.rho - 1) * at.rho * at.perSlope;
+  return at;
+}
+
+//! How the edge there moves outwards with the parameters of vpEllipseModel.
+VP_LANES_INLINE std::array<Floats, 5> outwardAt(const Place &at)
+{
+  return {at.normalU, at.normalV, at.perSlope * at.rho * at.rho,
+          0.5f * at.perSlope * (at.x0 * at.x0 - at.x1 * at.x1), at.perSlope * at.x0 * at.x1};
+}
+
+//! Of pixels about straight edges: vpPixelEdge, eight at a time.
+struct Edge {
+  Floats share, byShift, byBlur;
+};
+
+//! A Gaussian of the same variance takes the place of the pixel's square.
+VP_LANES_INLINE Edge smoothEdge(const Floats &distance, float blur)
+{
+  const float perSpread = 1 / std::sqrt(blur * blur + 1 / 12.f);
+  const Floats z = -distance * perSpread;
+  const vpLanes::Normal normal = vpLanes::normal(z);
+  return {normal.below, normal.density * perSpread, -z * normal.density * (blur * perSpread * perSpread)};
+}
+
+VP_LANES_INLINE Edge sharpEdge(const Floats &distance, const Floats &normalU, const Floats &normalV,
+                               float blur)
+{
+  static constexpr float narrowest = 0.02f;
+  const Floats p = vpLanes::most(0.5f * vpLanes::magnitude(normalU), all(narrowest)),
+               q = vpLanes::most(0.5f * vpLanes::magnitude(normalV), all(narrowest));
+  const float perBlur = 1 / blur;
+  Edge edge{all(0), all(0), all(0)};
+  for (int corner = 0; corner < 4; ++corner) {
+    const float sideP = corner < 2 ? 1 : -1, sideQ = corner % 2 == 0 ? 1 : -1, sign = sideP * sideQ;
+    const Floats z = (sideP * p + sideQ * q - distance) * perBlur;
+    const vpLanes::Normal normal = vpLanes::normal(z);
+    const Floats once = z * normal.below + normal.density;
+    edge.share += sign * 0.5f * (z * once + normal.below);
+    edge.byShift += sign * once;
+    edge.byBlur += sign * normal.below;
+  }
+  const Floats perArea = blur / (4 * p * q);
+  return {edge.share * perArea * blur, edge.byShift * perArea, edge.byBlur * perArea};
+}
+
+//! Eight ends of lines.
+struct Ends {
+  std::array<const unsigned char *, lanes> row; // of each line
+  std::array<int, lanes> from, pixels;          // samples; no pixels: it is none
+  Floats v, crossing;                           // px from the ellipse's middle
+};
+
+//! What vpLineEnd says of each.
+struct Found {
+  std::array<Floats, 5> outward;
+  Floats shiftShift, shiftBlur, blurBlur, shift, blur, squares, amplitude, background;
+  Integers valid;
+};
+
+VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellipse &ellipse, bool sharp,
+                            Found &found)
+{
+  const int longest = *std::max_element(ends.pixels.begin(), ends.pixels.end());
+  const Place crossing = placeOf(ellipse, ends.crossing, ends.v);
+  found.outward = outwardAt(crossing);
+  Floats reference, count;
+  for (int lane = 0; lane < lanes; ++lane) {
+    const int n = ends.pixels[lane];
+    const unsigned char *pixel = ends.row[lane] + ends.from[lane];
+    reference[lane] = n > 0 ? 0.5f * static_cast<float>(pixel[0] + pixel[n - 1]) : 0.f;
+    count[lane] = static_cast<float>(std::max(1, n));
+  }
+  // Sums of grey value I, share D, its derivatives by shift S and blur B, and of their products.
+  Floats I{}, D{}, S{}, B{}, II{}, DI{}, DD{}, SI{}, SD{}, SS{}, BI{}, BD{}, BS{}, BB{};
+  Floats most = all(0), least = all(1);
+  for (int k = 0; k < longest; ++k) {
+    Floats grey, u, member;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const bool inside = k < ends.pixels[lane];
+      const int sample = ends.from[lane] + (inside ? k : 0);
+      grey[lane] = ends.row[lane][sample];
+      u[lane] = static_cast<float>(samples[sample] - ellipse.u);
+      member[lane] = inside ? 1.f : 0.f;
+    }
+    const Floats distance = placeOf(ellipse, u, ends.v).distance;
+    const Edge edge = sharp ? sharpEdge(distance, crossing.normalU, crossing.normalV, ellipse.blur)
+                            : smoothEdge(distance, ellipse.blur);
+    const Floats i = member * (grey - reference), d = member * edge.share, s = member * edge.byShift,
+                 b = member * edge.byBlur;
+    most = vpLanes::most(most, d);
+    least = vpLanes::least(least, vpLanes::select(member > 0, d, all(1)));
+    I += i;
+    D += d;
+    S += s;
+    B += b;
+    II += i * i;
+    DI += d * i;
+    DD += d * d;
+    SI += s * i;
+    SD += s * d;
+    SS += s * s;
+    BI += b * i;
+    BD += b * d;
+    BS += b * s;
+    BB += b * b;
+  }
+  // A mean and a multiple of D are taken off.
+  const Floats perPixel = 1 / count;
+  const Floats dd = DD - D * D * perPixel, di = DI - D * I * perPixel, sd = SD - S * D * perPixel,
+               bd = BD - B * D * perPixel, a = di / dd, aa = a * a;
+  found.amplitude = a;
+  found.background = reference + (I - a * D) * perPixel;
+  found.squares = vpLanes::most(II - I * I * perPixel - di * a, all(0));
+  found.shiftShift = aa * (SS - S * S * perPixel - sd * sd / dd);
+  found.shiftBlur = aa * (BS - B * S * perPixel - bd * sd / dd);
+  found.blurBlur = aa * (BB - B * B * perPixel - bd * bd / dd);
+  found.shift = a * (SI - S * I * perPixel - sd * a);
+  found.blur = a * (BI - B * I * perPixel - bd * a);
+  found.valid = (most >= vpEdgeLimits::lit) & (least <= vpEdgeLimits::unlit);
+}
+
+//! One line that the outline touches. Columns: 1, D, I, S; then the derivatives of D by the parameters and B.
+struct Touch {
+  static constexpr int one = 0, share = 1, grey = 2, shift = 3, first = 4, all = 10;
+  const unsigned char *pixel;
+  const double *sample; // px
+  int pixels;
+  float v, reference;
+  std::array<std::array<float, all>, all> sums; // of products of two columns, the lower triangle
+  float most, least;                            // share
+};
+
+VP_SIMD_CLONES void measure(Touch &touch, const Ellipse &ellipse, bool sharp)
+{
+  std::array<std::array<Floats, Touch::all>, Touch::all> sums{};
+  Floats most = all(0), least = all(1);
+  for (int k = 0; k < touch.pixels; k += lanes) {
+    Floats grey, u, member;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const bool inside = k + lane < touch.pixels;
+      const int sample = inside ? k + lane : 0;
+      grey[lane] = touch.pixel[sample];
+      u[lane] = static_cast<float>(touch.sample[sample] - ellipse.u);
+      member[lane] = inside ? 1.f : 0.f;
+    }
+    const Place at = placeOf(ellipse, u, all(touch.v));
+    const Edge edge = sharp ? sharpEdge(at.distance, at.normalU, at.normalV, ellipse.blur)
+                            : smoothEdge(at.distance, ellipse.blur);
+    std::array<Floats, Touch::all> column;
+    column[Touch::one] = member;
+    column[Touch::share] = member * edge.share;
+    column[Touch::grey] = member * (grey - touch.reference);
+    column[Touch::shift] = member * edge.byShift;
+    const std::array<Floats, 5> outward = outwardAt(at);
+    for (size_t p = 0; p < outward.size(); ++p) {
+      column[Touch::first + p] = column[Touch::shift] * outward[p];
+    }
+    column[Touch::all - 1] = member * edge.byBlur;
+    most = vpLanes::most(most, column[Touch::share]);
+    least = vpLanes::least(least, vpLanes::select(member > 0, edge.share, all(1)));
+    for (size_t i = 0; i < Touch::all; ++i) {
+      for (size_t j = 0; j <= i; ++j) {
+        sums[i][j] += column[i] * column[j];
+      }
+    }
+  }
+  touch.most = 0;
+  touch.least = 1;
+  for (int lane = 0; lane < lanes; ++lane) {
+    touch.most = std::max(touch.most, most[lane]);
+    touch.least = std::min(touch.least, least[lane]);
+  }
+  for (size_t i = 0; i < Touch::all; ++i) {
+    for (size_t j = 0; j <= i; ++j) {
+      float sum = 0;
+      for (int lane = 0; lane < lanes; ++lane) {
+        sum += sums[i][j][lane];
+      }
+      touch.sums[i][j] = sum;
+    }
+  }
+}
+
+VP_SIMD_CLONES void chords(const Ellipse &ellipse, const Floats &v, Chord &outer, Chord &edge, Chord &inner)
+{
+  outer = chordOf(ellipse, v, ellipse.reach);
+  edge = chordOf(ellipse, v, 0);
+  inner = chordOf(ellipse, v, -ellipse.reach);
+}
+
+//! What is left of the sums once a mean and a multiple of D are taken off, as an end of a line.
+bool reduce(const Touch &touch, vpEllipseEdges::End &end, vpEllipseEdges::Equations &equations)
+{
+  if (touch.most < vpEdgeLimits::lit || touch.least > vpEdgeLimits::unlit) {
+    return false;
+  }
+  using Column = Eigen::Matrix<double, Touch::all, 1>;
+  Eigen::Matrix<double, Touch::all, Touch::all> sums;
+  for (int i = 0; i < Touch::all; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      sums(i, j) = sums(j, i) = touch.sums[static_cast<size_t>(i)][static_cast<size_t>(j)];
+    }
+  }
+  const Column mean = sums.col(Touch::one) / sums(Touch::one, Touch::one);
+  sums -= sums(Touch::one, Touch::one) * mean * mean.transpose();
+  const double DD = sums(Touch::share, Touch::share), a = sums(Touch::share, Touch::grey) / DD;
+  const Column ofShare = sums.col(Touch::share) / DD;
+  sums -= DD * ofShare * ofShare.transpose();
+  end.amplitude = a;
+  end.background = touch.reference + mean(Touch::grey) - a * mean(Touch::share);
+  end.squares = std::max(0.0, sums(Touch::grey, Touch::grey));
+  end.pixels = touch.pixels;
+  end.shiftShift = a * a * sums(Touch::shift, Touch::shift);
+  end.shift = a * sums(Touch::shift, Touch::grey);
+  constexpr int N = Touch::all - Touch::first;
+  equations.H = a * a * sums.bottomRightCorner<N, N>();
+  equations.g = a * sums.col(Touch::grey).tail<N>();
+  return true;
+}
+
+vpEllipseEdges::End endOf(const Found &side, int lane)
+{
+  vpEllipseEdges::End end;
+  for (Eigen::Index p = 0; p < end.outward.size(); ++p) {
+    end.outward(p) = side.outward[static_cast<size_t>(p)][lane];
+  }
+  end.shiftShift = side.shiftShift[lane];
+  end.shiftBlur = side.shiftBlur[lane];
+  end.blurBlur = side.blurBlur[lane];
+  end.shift = side.shift[lane];
+  end.blur = side.blur[lane];
+  end.squares = side.squares[lane];
+  end.amplitude = side.amplitude[lane];
+  end.background = side.background[lane];
+  return end;
+}
+} // namespace
+
+void vpEllipseEdges::find(int from, int to, std::vector<End> &ends, std::vector<Equations> &along) const
+{
+  const Eigen::Matrix2d &shape = m_model.shape();
+  const Eigen::Vector2d centre = m_model.centre();
+  const Ellipse ellipse{static_cast<float>(shape(0, 0)),
+                        static_cast<float>(shape(0, 1)),
+                        static_cast<float>(shape(1, 1)),
+                        static_cast<float>(m_model.radius()),
+                        static_cast<float>(m_blur),
+                        static_cast<float>(m_reach),
+                        centre.x(),
+                        centre.y()};
+  const bool sharp = m_blur <= vpEdgeLimits::sharp;
+  auto touchAt = [&](int line, float v, double first, double last) {
+    const vpLineStretch stretch(centre.x() + first, centre.x() + last, m_lines.cols);
+    if (!stretch.enough()) {
+      return;
+    }
+    Touch touch{m_lines[line] + stretch.from,
+                m_u.data() + stretch.from,
+                stretch.to - stretch.from + 1,
+                v,
+                0,
+                {},
+                0,
+                0};
+    touch.reference = 0.5f * static_cast<float>(touch.pixel[0] + touch.pixel[touch.pixels / 2]);
+    measure(touch, ellipse, sharp);
+    End end;
+    Equations equations;
+    if (reduce(touch, end, equations)) {
+      end.line = line;
+      end.along = static_cast<int>(along.size());
+      along.push_back(equations);
+      ends.push_back(end);
+    }
+  };
+  for (int line = from; line <= to; line += lanes) {
+    std::array<Ends, 2> sides; // where the outline begins on the line, and where it ends
+    Floats v;
+    for (int lane = 0; lane < lanes; ++lane) {
+      v[lane] = static_cast<float>(m_v[static_cast<size_t>(std::min(line + lane, to))] - centre.y());
+    }
+    Chord outer, edge, inner;
+    chords(ellipse, v, outer, edge, inner);
+    sides[0].crossing = edge.first;
+    sides[1].crossing = edge.last;
+    for (Ends &side : sides) {
+      side.v = v;
+      side.pixels.fill(0);
+      side.from.fill(0);
+      for (int lane = 0; lane < lanes; ++lane) {
+        side.row[lane] = m_lines[std::min(line + lane, to)];
+      }
+    }
+    bool any = false;
+    for (int lane = 0; lane < lanes && line + lane <= to; ++lane) {
+      if (edge.meets[lane] == 0 || outer.meets[lane] == 0) {
+        continue;
+      }
+      if (inner.meets[lane] == 0 || inner.last[lane] - inner.first[lane] <= 1) {
+        touchAt(line + lane, v[lane], outer.first[lane], outer.last[lane]);
+        continue;
+      }
+      auto place = [&](Ends &side, double first, double last) {
+        const vpLineStretch stretch(centre.x() + first, centre.x() + last, m_lines.cols);
+        if (stretch.enough()) {
+          side.from[lane] = stretch.from;
+          side.pixels[lane] = stretch.to - stretch.from + 1;
+          any = true;
+        }
+      };
+      place(sides[0], outer.first[lane], inner.first[lane]);
+      place(sides[1], inner.last[lane], outer.last[lane]);
+    }
+    if (!any) {
+      continue;
+    }
+    std::array<Found, 2> found;
+    measure(sides[0], m_u.data(), ellipse, sharp, found[0]);
+    measure(sides[1], m_u.data(), ellipse, sharp, found[1]);
+    for (int lane = 0; lane < lanes; ++lane) {
+      for (size_t s = 0; s < 2; ++s) {
+        if (sides[s].pixels[lane] > 0 && found[s].valid[lane] != 0) {
+          ends.push_back(endOf(found[s], lane));
+          ends.back().line = line + lane;
+          ends.back().pixels = sides[s].pixels[lane];
+        }
+      }
+    }
+  }
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,44 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpEllipseEdges_h
+#define vpEllipseEdges_h
+
+#include <vector>
+
+#include "vpEdgeFit.h"
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  What vpEdgeFit asks of the ends of a line, for an ellipse and eight lines at a time: it is there that nearly
+  all pixels are looked at. In single precision, relative to the ellipse's middle.
+*/
+class vpEllipseEdges
+{
+public:
+  using End = vpLineEnd<vpEllipseModel::parameters + 1>;
+  using Equations = vpNormalEquations<vpEllipseModel::parameters + 1>;
+
+  //! \param v, u Positions of the lines and of the samples, px. \param reach px on either side of the edge.
+  vpEllipseEdges(const cv::Mat_<unsigned char> &lines, const std::vector<double> &v,
+                 const std::vector<double> &u, const vpEllipseModel &model, double blur, double reach)
+      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_reach(reach)
+  {
+  }
+
+  //! Appends the ends of lines \e from to \e to; where the outline runs along a line, one end for both, whose
+  //! equations are appended to \e along.
+  void find(int from, int to, std::vector<End> &ends, std::vector<Equations> &along) const;
+
+private:
+  const cv::Mat_<unsigned char> &m_lines;
+  const std::vector<double> &m_v, &m_u;
+  const vpEllipseModel &m_model;
+  double m_blur, m_reach;
+};
+
+END_VISP_NAMESPACE
+
+#endif
