@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <numeric>
 #include <utility>
+
+#include <opencv2/core/hal/intrin.hpp>
 
 BEGIN_VISP_NAMESPACE
 
@@ -23,52 +26,78 @@ const int minStripeWidth = 3; // samples; narrower ones are specks
 //! Of a line.
 int brightest(const unsigned char *row, int first, int last)
 {
-  return *std::max_element(row + first, row + last + 1);
-}
-
-//! The same of a whole block, which compilers make one instruction for many of.
-template <int block>
-int brightestOf(const unsigned char *row)
-{
   unsigned char most = 0;
-  for (int i = 0; i < block; ++i) {
-    most = std::max(most, row[i]);
+  for (int x = first; x <= last; ++x) {
+    most = std::max(most, row[x]);
   }
   return most;
+}
+
+constexpr int block = 64; // samples
+
+//! Bit i is set where sample i of a block is brighter than \e grey.
+std::uint64_t brighter(const unsigned char *row, int samples, unsigned char grey)
+{
+  std::uint64_t mask = 0;
+  if (samples < block) {
+    for (int i = 0; i < samples; ++i) {
+      mask |= static_cast<std::uint64_t>(row[i] > grey) << i;
+    }
+    return mask;
+  }
+  const cv::v_uint8x16 threshold = cv::v_setall_u8(grey);
+  static constexpr int width = cv::v_uint8x16::nlanes;
+  for (int i = 0; i < block; i += width) {
+    const auto part = static_cast<std::uint64_t>(cv::v_signmask(cv::v_load(row + i) > threshold));
+    mask |= part << i;
+  }
+  return mask;
+}
+
+//! Appends the runs of line \e y, from sample \e first to \e last, that are brighter than \e grey.
+void scan(const unsigned char *row, int y, int first, int last, unsigned char grey, int parent,
+          std::vector<Run> &runs)
+{
+  int start = -1; // of the run at hand
+  for (int x = first; x <= last; x += block) {
+    const int samples = std::min(block, last - x + 1);
+    const std::uint64_t mask = brighter(row + x, samples, grey);
+    for (int i = 0; i < samples;) {
+      const std::uint64_t left = (start < 0 ? mask : ~mask) >> i;
+      if (left == 0) {
+        break; // no change in the rest of the block
+      }
+      i += __builtin_ctzll(left);
+      if (i >= samples) {
+        break;
+      }
+      if (start < 0) {
+        start = x + i;
+      } else {
+        runs.push_back({y, start, x + i - 1, parent});
+        start = -1;
+      }
+    }
+  }
+  if (start >= 0) {
+    runs.push_back({y, start, last, parent});
+  }
 }
 
 std::vector<Run> runsAbove(const cv::Mat_<unsigned char> &lines, double level, const vpLevelStripes *below)
 {
   std::vector<Run> runs;
-  const int grey = static_cast<int>(std::floor(level)); // above both or neither
-  auto scan = [&](int y, int first, int last, int parent) {
-    const unsigned char *row = lines[y];
-    static const int block = 64;
-    int next = first; // sample from which a block is to be looked at
-    for (int x = first; x <= last; ++x) {
-      while (x >= next && x + block <= last && brightestOf<block>(row + x) <= grey) {
-        x += block;
-      }
-      next = x >= next ? x + block : next;
-      if (row[x] <= grey) {
-        continue;
-      }
-      const int start = x;
-      while (x < last && row[x + 1] > grey) {
-        ++x;
-      }
-      runs.push_back({y, start, x, parent});
-    }
-  };
+  const auto grey =
+      static_cast<unsigned char>(std::clamp(std::floor(level), 0.0, 255.0)); // above both or neither
   if (below != nullptr) {
     for (const Run &run : below->runs) {
       if (!below->stripes[run.stripe].settled) {
-        scan(run.line, run.first, run.last, run.stripe);
+        scan(lines[run.line], run.line, run.first, run.last, grey, run.stripe, runs);
       }
     }
   } else {
     for (int y = 0; y < lines.rows; ++y) {
-      scan(y, 0, lines.cols - 1, -1);
+      scan(lines[y], y, 0, lines.cols - 1, grey, -1, runs);
     }
   }
   return runs;
