@@ -12,12 +12,12 @@
 #include <string>
 
 #include <opencv2/core/utility.hpp>
-#include <opencv2/video/tracking.hpp>
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpImageConvert.h>
 #include <visp3/vlp_tracking/vpTargetTracker.h>
 
 #include "common/vpTargetScene.h"
+#include "vpPlainCamShift.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
@@ -70,43 +70,23 @@ private:
   bool m_colours;
 };
 
-//! As OpenCV's example has it: a histogram of the first window (grey values, or the hue of what has colour),
-//! back projected onto the whole frame, and the window widened where it has shrunk to nothing. \e share: the
-//! histogram is of the middle of the window, as a careful user takes it who sees that corners are background.
+//! Of grey values, or of the hue of what has colour. \e share: of the window that the histogram is of, as a
+//! careful user takes it who sees that corners are background.
 class PlainCamShift : public Tracker
 {
 public:
-  explicit PlainCamShift(double share = 1) : m_share(share) {}
+  explicit PlainCamShift(double share = 1) { m_tracker.share = share; }
   void begin(const Frame &frame, const vpRect &window) override
   {
-    m_window = cv::Rect(cvRound(window.getLeft()), cvRound(window.getTop()), cvRound(window.getWidth()),
-                        cvRound(window.getHeight()));
     const cv::Mat feature = featureOf(frame);
-    const int aside = cvRound(0.5 * (1 - m_share) * m_window.width),
-              above = cvRound(0.5 * (1 - m_share) * m_window.height);
-    const cv::Rect middle(m_window.x + aside, m_window.y + above, m_window.width - 2 * aside,
-                          m_window.height - 2 * above);
-    const cv::Mat part = feature(middle), mask = frame.isColour ? cv::Mat(m_mask(middle)) : cv::Mat();
-    cv::calcHist(&part, 1, &m_channel, mask, m_histogram, 1, &m_bins, ranges(frame));
-    cv::normalize(m_histogram, m_histogram, 0, 255, cv::NORM_MINMAX);
+    m_tracker.begin(feature, m_mask, frame.isColour ? 180 : 256,
+                    cv::Rect(cvRound(window.getLeft()), cvRound(window.getTop()), cvRound(window.getWidth()),
+                             cvRound(window.getHeight())));
   }
   Eigen::Vector2d track(const Frame &frame) override
   {
     const cv::Mat feature = featureOf(frame);
-    cv::calcBackProject(&feature, 1, &m_channel, m_histogram, m_projection, ranges(frame));
-    if (frame.isColour)
-      m_projection &= m_mask;
-    const cv::TermCriteria until(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 10, 1);
-    const cv::RotatedRect found = cv::CamShift(m_projection, m_window, until);
-    if (m_window.area() <= 1) {
-      const int more = (std::min(feature.cols, feature.rows) + 5) / 6;
-      m_window = cv::Rect(m_window.x - more, m_window.y - more, 2 * more, 2 * more) &
-                 cv::Rect(0, 0, feature.cols, feature.rows);
-      if (m_window.area() <= 0)
-        m_window = cv::Rect(0, 0, feature.cols, feature.rows);
-      return {m_window.x + 0.5 * (m_window.width - 1), m_window.y + 0.5 * (m_window.height - 1)};
-    }
-    return {found.center.x, found.center.y};
+    return m_tracker.track(feature, m_mask);
   }
 
 private:
@@ -119,18 +99,9 @@ private:
     cv::extractChannel(m_hsv, m_hue, 0);
     return m_hue;
   }
-  const float **ranges(const Frame &frame)
-  {
-    m_ranges = frame.isColour ? m_hues : m_greys;
-    return &m_ranges;
-  }
 
-  const double m_share;
-  const int m_channel = 0, m_bins = 16;
-  const float m_greys[2] = {0, 256}, m_hues[2] = {0, 180};
-  const float *m_ranges = nullptr;
-  cv::Rect m_window;
-  cv::Mat m_histogram, m_projection, m_hsv, m_hue, m_mask;
+  vpPlainCamShift m_tracker;
+  cv::Mat m_hsv, m_hue, m_mask; // the mask is empty for grey frames
 };
 
 struct Scene {
