@@ -75,7 +75,7 @@ Result drives(int count, double share, const Doubt &doubt)
     vpVlpFilter filter(drive.rig());
     settings(filter);
     drive.start(filter);
-    share > 0 ? filter.rouse() : filter.calm();
+    share > 0 ? filter.rouse() : filter.calm(0);
     double t = 0;
     for (int k = 0; k < 10; ++k) {
       t = k * frameTime;
@@ -176,7 +176,7 @@ TEST(VlpFilterConsistency, StandingStillDoesNotAverageClaimsAway)
       1, [](double) { return vpHomogeneousMatrix(); }, claimed);
   vpVlpFilter filter(drive.rig());
   drive.start(filter);
-  filter.calm();
+  filter.calm(0);
   double after10 = 0;
   for (int k = 0; k < 200; ++k) {
     drive.frame(filter, k * frameTime);

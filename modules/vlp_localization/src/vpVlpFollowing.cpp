@@ -159,24 +159,21 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
     location.observations = seen;
     filter.rouse();
   };
-  auto few = [&](bool orHalf) {
-    const size_t fitting = 2 * accepted(location);
-    return fitting < whole.size() || (orHalf && whole.size() > 2 && fitting == whole.size());
-  };
+  auto halfOrLess = [&] { return whole.size() > 1 && 2 * accepted(location) <= whole.size(); };
   bool roused = false;
   location.fix = correct(location, whole);
-  if (accepted(location) == 0 || few(false) ||
+  if (accepted(location) == 0 || halfOrLess() ||
       !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
     roused = accepted(location) > 0;
     again();
     location.fix = correct(location, whole);
   }
-  if (few(true)) {
+  if (halfOrLess()) {
     again();
     filter.forgetVelocity();
     location.fix = correct(location, whole);
   }
-  if (few(true)) { // rays are not linear in so much: about what they say so far
+  if (halfOrLess()) { // rays are not linear in so much: about what they say so far
     const Eigen::Vector3d velocity = filter.velocity();
     again();
     filter.forgetVelocity();
@@ -188,18 +185,21 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
 
 /*!
   How far the lamps of a frame contradict each other under what camera and map say of themselves, whatever
-  pose and constant velocity the robot has: their innovations in a filter that knows neither, as standard
-  deviations of a chi-square beyond its mean.
+  pose and nearly constant velocity the robot has: their innovations in a filter that knows neither, as
+  standard deviations of a chi-square beyond its mean.
 */
 double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const
 {
   const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
   vpVlpFilter alone = filter;
   alone.start(location.fix.wMb, location.timestamp);
+  // Errors of many lamps contradict each other however the robot moves; of few, it may seem to explain them.
+  static const size_t many = 8;
+  static const double manoeuvring = 0.05; // share of its accelerations
   double chiSquare = 0, degrees = 0;
   for (int round = 0; round < 2; ++round) {
     chiSquare = degrees = 0;
-    alone.calm();
+    alone.calm(usable.size() < many ? 0 : manoeuvring);
     alone.mark(location.timestamp);
     for (size_t i : inTime(location, usable)) {
       if (lamps[i] != nullptr && location.observations[i].accepted) {

@@ -132,8 +132,8 @@ public:
   bool settle(double chiSquare, int degreesOfFreedom);
   //! The robot may start, stop or turn at any time.
   void rouse() { m_unrest = 1; }
-  //! Its velocity is constant.
-  void calm() { m_unrest = 0; }
+  //! Its velocity is constant but for that share of the random accelerations.
+  void calm(double share) { m_unrest = share; }
 
   //! Takes the rig's attitude and the map's places for less certain than they say, by claimedTilt and
   //! claimedPlace; from the next start() on, since what was estimated before rests on the claims.
