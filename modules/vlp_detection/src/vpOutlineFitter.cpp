@@ -15,6 +15,24 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
+//! Enough of the points to start from.
+std::vector<cv::Point2f> thinned(std::vector<cv::Point2f> points)
+{
+  static const size_t enough = 100;
+  const size_t step = points.size() / enough;
+  if (step < 2) {
+    return points;
+  }
+  // First and last ends come by turns: pairs are kept.
+  std::vector<cv::Point2f> few;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (i / 2 % step == 0) {
+      few.push_back(points[i]);
+    }
+  }
+  return few;
+}
+
 vpLampOutline boxOf(const vpLedRoi &roi)
 {
   vpLampOutline outline;
@@ -121,7 +139,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   if (fromBorderToBorder) {
     return best;
   }
-  const std::vector<cv::Point2f> ends = vpChordShape::outerEnds(roi, lines.cols);
+  const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(roi, lines.cols));
   if (ends.size() < 6) {
     return best;
   }

@@ -88,10 +88,13 @@ public:
 
 private:
   std::array<Eigen::Vector2d, 4> cornersAt(const Vector &step) const;
+  void turnNormals();
+  double distance(const Eigen::Vector2d &fromInside, size_t &side) const;
 
   Eigen::Vector2d m_inside;
   double m_scale = 1; // px, half the mean side
   std::array<double, 4> m_angle{};
+  std::array<Eigen::Vector2d, 4> m_normal; // that they make
   std::array<double, 4> m_offset{};
   // px, how well the lit lines alone place the middle between sides 0 and 2, and between 1 and 3
   std::array<double, 2> m_middleSigma{};

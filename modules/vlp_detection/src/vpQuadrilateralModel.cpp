@@ -34,9 +34,10 @@ vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &
     model.m_angle[i] = r.angle * M_PI / 180 + i * M_PI / 2;
     model.m_offset[i] = 0.5 * (i % 2 == 0 ? r.size.width : r.size.height);
   }
+  model.turnNormals();
   for (int axis = 0; axis < 2; ++axis) {
     model.m_middleSigma[axis] = model.m_scale;
-    if (std::abs(std::cos(model.m_angle[axis])) < alongLines) {
+    if (std::abs(model.m_normal[axis].x()) < alongLines) {
       // Where the lamp is dark no line shows these sides: the lit lines lie anywhere between them.
       const double hidden = model.m_offset[1 - axis] - model.m_offset[axis]; // half of what a square has more
       static const double blurred = 1; // px, that light may reach over them or fall short of them
@@ -46,30 +47,43 @@ vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &
   return model;
 }
 
+void vpQuadrilateralModel::turnNormals()
+{
+  for (size_t i = 0; i < m_normal.size(); ++i) {
+    m_normal[i] = {std::cos(m_angle[i]), std::sin(m_angle[i])};
+  }
+}
+
+//! Signed distance of a point, from m_inside, and the side that it is nearest to.
+double vpQuadrilateralModel::distance(const Eigen::Vector2d &fromInside, size_t &side) const
+{
+  double farthest = -std::numeric_limits<double>::max();
+  for (size_t i = 0; i < m_normal.size(); ++i) {
+    const double distance = m_normal[i].dot(fromInside) - m_offset[i];
+    if (distance > farthest) {
+      farthest = distance;
+      side = i;
+    }
+  }
+  return farthest;
+}
+
 double vpQuadrilateralModel::distance(const Eigen::Vector2d &x) const
 {
-  Vector derivative;
-  Eigen::Vector2d normal;
-  return distance(x, derivative, normal);
+  size_t side = 0;
+  return distance(x - m_inside, side);
 }
 
 double vpQuadrilateralModel::distance(const Eigen::Vector2d &x, Vector &derivative,
                                       Eigen::Vector2d &normal) const
 {
   const Eigen::Vector2d d = x - m_inside;
-  double farthest = -std::numeric_limits<double>::max();
-  int side = 0;
-  for (int i = 0; i < 4; ++i) {
-    const double distance = std::cos(m_angle[i]) * d.x() + std::sin(m_angle[i]) * d.y() - m_offset[i];
-    if (distance > farthest) {
-      farthest = distance;
-      side = i;
-    }
-  }
-  normal = {std::cos(m_angle[side]), std::sin(m_angle[side])};
+  size_t side = 0;
+  const double farthest = distance(d, side);
+  normal = m_normal[side];
   derivative.setZero();
-  derivative(2 * side) = (-normal.y() * d.x() + normal.x() * d.y()) / m_scale;
-  derivative(2 * side + 1) = -1;
+  derivative(static_cast<Eigen::Index>(2 * side)) = (-normal.y() * d.x() + normal.x() * d.y()) / m_scale;
+  derivative(static_cast<Eigen::Index>(2 * side + 1)) = -1;
   return farthest;
 }
 
@@ -79,6 +93,7 @@ void vpQuadrilateralModel::advance(const Vector &step)
     m_angle[i] = wrapped(m_angle[i] + step(2 * i) / m_scale);
     m_offset[i] += step(2 * i + 1);
   }
+  turnNormals();
 }
 
 double vpQuadrilateralModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
@@ -120,8 +135,8 @@ bool vpQuadrilateralModel::stretch(double v, double distance, double &first, dou
   first = -1e9;
   last = 1e9;
   for (int i = 0; i < 4; ++i) {
-    const double c = std::cos(m_angle[i]);
-    const double limit = m_offset[i] + distance - std::sin(m_angle[i]) * (v - m_inside.y());
+    const double c = m_normal[i].x();
+    const double limit = m_offset[i] + distance - m_normal[i].y() * (v - m_inside.y());
     if (std::abs(c) < 1e-6) {
       if (limit < 0) {
         return false;
@@ -141,11 +156,11 @@ bool vpQuadrilateralModel::crossedWell(double v, bool first, bool last) const
   double from = -1e9, to = 1e9;
   int firstSide = -1, lastSide = -1;
   for (int i = 0; i < 4; ++i) {
-    const double c = std::cos(m_angle[i]);
+    const double c = m_normal[i].x();
     if (std::abs(c) < alongLines) {
       continue;
     }
-    const double u = m_inside.x() + (m_offset[i] - std::sin(m_angle[i]) * (v - m_inside.y())) / c;
+    const double u = m_inside.x() + (m_offset[i] - m_normal[i].y() * (v - m_inside.y())) / c;
     if (c > 0 && u < to) {
       to = u;
       lastSide = i;

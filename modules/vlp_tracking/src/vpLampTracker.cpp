@@ -66,7 +66,40 @@ struct vpLampTracker::Track {
   bool taken = false;  // by an observation of the frame at hand
   vpRect place;        // px, where it was seen last
   bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
+  std::vector<unsigned char> look; // pixels of the place, line by line
+
+  void remember(const vpImage<unsigned char> &I);
+  bool shown() const { return !look.empty(); }
+  bool showsAgain(const vpImage<unsigned char> &I) const;
 };
+
+//! What the picture shows at its place.
+void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
+{
+  look.clear();
+  const auto left = static_cast<unsigned int>(place.getLeft()),
+             top = static_cast<unsigned int>(place.getTop()),
+             width = static_cast<unsigned int>(place.getWidth()),
+             height = static_cast<unsigned int>(place.getHeight());
+  for (unsigned int v = top; v < top + height; ++v) {
+    look.insert(look.end(), I[v] + left, I[v] + left + width);
+  }
+}
+
+//! Whether another one shows the same, pixel for pixel.
+bool vpLampTracker::Track::showsAgain(const vpImage<unsigned char> &I) const
+{
+  const auto left = static_cast<unsigned int>(place.getLeft()),
+             top = static_cast<unsigned int>(place.getTop()),
+             width = static_cast<unsigned int>(place.getWidth());
+  for (size_t line = 0; line * width < look.size(); ++line) {
+    const auto first = look.begin() + static_cast<std::ptrdiff_t>(line * width);
+    if (!std::equal(first, first + width, I[top + static_cast<unsigned int>(line)] + left)) {
+      return false;
+    }
+  }
+  return true;
+}
 
 vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detector(rig, map), m_rig(rig) {}
 vpLampTracker::~vpLampTracker() = default;
@@ -94,8 +127,9 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
                           (m_any ? " after that of the frame before, " + vpNumberText(m_time) + " s" : ""));
   }
   detector.check(frame.I);
-  m_again = m_any && m_picture == frame.I;
-  m_picture = frame.I;
+  m_again = std::any_of(m_tracks.begin(), m_tracks.end(), [](const Track &track) { return track.shown(); }) &&
+            std::all_of(m_tracks.begin(), m_tracks.end(),
+                        [&frame](const Track &track) { return !track.shown() || track.showsAgain(frame.I); });
   // Windows from the target trackers, a strip in search of new lamps, or all of the picture.
   m_searched = windows(frame, expected);
   if (m_inSight < needed) {
@@ -122,6 +156,9 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   m_time = frame.timestamp;
   m_any = true;
   bury(frame.timestamp);
+  for (Track &track : m_tracks) {
+    track.remember(frame.I);
+  }
   return m_observations;
 }
 

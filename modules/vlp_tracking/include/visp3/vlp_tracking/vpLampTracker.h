@@ -26,8 +26,8 @@ BEGIN_VISP_NAMESPACE
   begins anew, with a new number and without an id, until its own stripes give it one. So ids are never handed
   from lamp to lamp where two cross or one is replaced.
 
-  A picture that is that of the frame before, pixel for pixel, has come twice: sensors are never that quiet.
-  Its stripes say nothing new, so that they do not count again.
+  A picture that shows all lamps as the frame before did, pixel for pixel, has come twice: sensors are never
+  that quiet. Its stripes say nothing new, so that they do not count again.
 
   Steady regions (windows, lamps without stripes) are seen where the search comes by, and not followed.
 
@@ -87,14 +87,13 @@ private:
   std::vector<Track> m_tracks;
   std::vector<vpRect> m_searched;
   std::vector<vpLampObservation> m_observations;
-  std::vector<int> m_trackOf;       // of each observation, -1: none
-  unsigned int m_born = 0;          // lamps in all
-  double m_time = 0;                // s, of the last frame
-  bool m_any = false;               // frame so far
-  vpImage<unsigned char> m_picture; // of the last frame
-  bool m_again = false;             // the one at hand has the picture of the one before
-  unsigned int m_strip = 0;         // that is searched next
-  size_t m_inSight = 0;             // lamps with an id in the last frame
+  std::vector<int> m_trackOf; // of each observation, -1: none
+  unsigned int m_born = 0;    // lamps in all
+  double m_time = 0;          // s, of the last frame
+  bool m_any = false;         // frame so far
+  bool m_again = false;       // the frame at hand has the picture of the one before
+  unsigned int m_strip = 0;   // that is searched next
+  size_t m_inSight = 0;       // lamps with an id in the last frame
 };
 
 END_VISP_NAMESPACE
