@@ -31,21 +31,21 @@ double unclipped(double black)
 
 Block blockAt(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
 {
-  double mean = 0;
-  double squares = 0;
-  int black = 0;
+  double squares = 0; // about each line's own mean
+  int all = 0, black = 0;
   for (int y = box.y; y < box.br().y; ++y) {
-    const unsigned char *row = lines[y];
-    double sum = 0;
-    double sumSquares = 0;
-    for (int x = box.x; x < box.br().x; ++x) {
-      sum += row[x];
-      sumSquares += row[x] * row[x];
-      black += row[x] == 0;
+    const unsigned char *row = lines[y] + box.x;
+    int sum = 0, sumSquares = 0;
+    for (int x = 0; x < box.width; ++x) {
+      const int grey = row[x];
+      sum += grey;
+      sumSquares += grey * grey;
+      black += grey == 0;
     }
-    mean += sum;
-    squares += sumSquares - sum * sum / box.width;
+    all += sum;
+    squares += sumSquares - static_cast<double>(sum) * sum / box.width;
   }
+  const double mean = all;
   const double variance = squares / std::max(1, box.height * (box.width - 1));
   return {mean / box.area(), std::sqrt(variance) * unclipped(static_cast<double>(black) / box.area())};
 }

@@ -213,7 +213,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   const double scale = 1.4826 * std::max(median(m_sorted), 0.02);
   equations = Equations();
   m_sorted.clear();
-  double squares = 0, weights = 0, pixels = 0, chiSquare = 0, members = 0;
+  double squares = 0, weights = 0, pixels = 0, chiSquare = 0, members = 0, kept = 0;
   for (size_t i = 0; i < m_ends.size(); ++i) {
     const End &end = m_ends[i];
     if (!shines(end)) {
@@ -228,6 +228,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
     if (std::abs(z) >= 1) {
       continue;
     }
+    ++kept;
     const double tukey = (1 - z * z) * (1 - z * z), weight = tukey / variance;
     if (end.along >= 0) {
       equations.H += weight * m_along[static_cast<size_t>(end.along)].H;
@@ -255,6 +256,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   m_misfit = pixels > 0 ? chiSquare / pixels : 0;
   m_pixels = pixels;
   m_members = members;
+  m_kept = m_sorted.empty() ? 0 : kept / static_cast<double>(m_sorted.size());
 }
 
 /*!

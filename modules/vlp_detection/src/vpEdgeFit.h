@@ -91,6 +91,8 @@ public:
   //! that is of.
   double misfit() const { return m_misfit; }
   double pixels() const { return m_pixels; }
+  //! Share of the lit ends that take part: others are far from where the outline has them.
+  double kept() const { return m_kept; }
   //! Chi-square of the shape's prior.
   double prior() const { return m_prior; }
 
@@ -116,6 +118,7 @@ private:
   double m_pixels = 0;
   double m_prior = 0;
   double m_members = 0; // ends that take part
+  double m_kept = 0;
   std::vector<End> m_ends;
   std::vector<Equations> m_along; // of ends that run along their line
   std::vector<int> m_touched;     // lines

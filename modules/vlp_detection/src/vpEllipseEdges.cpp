@@ -27,7 +27,8 @@ constexpr int lanes = vpLanes::count;
 struct Ellipse {
   float uu, uv, vv; // M
   float radius, blur, reach;
-  double u, v; // px, its middle
+  double u, v;  // px, its middle
+  bool aligned; // samples lie where their numbers say
 };
 
 //! Where lines meet the ellipse grown by some distance, px from its middle.
@@ -133,24 +134,30 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
   const int longest = *std::max_element(ends.pixels.begin(), ends.pixels.end());
   const Place crossing = placeOf(ellipse, ends.crossing, ends.v);
   found.outward = outwardAt(crossing);
-  Floats reference, count;
+  Floats reference, count, first; // first: of the samples, px from the ellipse's middle
   for (int lane = 0; lane < lanes; ++lane) {
     const int n = ends.pixels[lane];
+    first[lane] = static_cast<float>(ends.from[lane] - ellipse.u);
     const unsigned char *pixel = ends.row[lane] + ends.from[lane];
     reference[lane] = n > 0 ? 0.5f * static_cast<float>(pixel[0] + pixel[n - 1]) : 0.f;
-    count[lane] = static_cast<float>(std::max(1, n));
+    count[lane] = static_cast<float>(n);
   }
   // Sums of grey value I, share D, its derivatives by shift S and blur B, and of their products.
   Floats I{}, D{}, S{}, B{}, II{}, DI{}, DD{}, SI{}, SD{}, SS{}, BI{}, BD{}, BS{}, BB{};
   Floats most = all(0), least = all(1);
   for (int k = 0; k < longest; ++k) {
-    Floats grey, u, member;
+    Floats grey, u;
     for (int lane = 0; lane < lanes; ++lane) {
-      const bool inside = k < ends.pixels[lane];
-      const int sample = ends.from[lane] + (inside ? k : 0);
-      grey[lane] = ends.row[lane][sample];
-      u[lane] = static_cast<float>(samples[sample] - ellipse.u);
-      member[lane] = inside ? 1.f : 0.f;
+      grey[lane] = ends.row[lane][std::min(ends.from[lane] + k, ends.from[lane] + ends.pixels[lane] - 1)];
+    }
+    const Floats member = vpLanes::select(count > static_cast<float>(k), all(1), all(0));
+    if (ellipse.aligned) {
+      u = first + static_cast<float>(k);
+    } else {
+      for (int lane = 0; lane < lanes; ++lane) {
+        const int sample = ends.from[lane] + (k < ends.pixels[lane] ? k : 0);
+        u[lane] = static_cast<float>(samples[sample] - ellipse.u);
+      }
     }
     const Floats distance = placeOf(ellipse, u, ends.v).distance;
     const Edge edge = sharp ? sharpEdge(distance, crossing.normalU, crossing.normalV, ellipse.blur)
@@ -175,7 +182,7 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
     BB += b * b;
   }
   // A mean and a multiple of D are taken off.
-  const Floats perPixel = 1 / count;
+  const Floats perPixel = 1 / vpLanes::most(count, all(1));
   const Floats dd = DD - D * D * perPixel, di = DI - D * I * perPixel, sd = SD - S * D * perPixel,
                bd = BD - B * D * perPixel, a = di / dd, aa = a * a;
   found.amplitude = a;
@@ -317,7 +324,8 @@ void vpEllipseEdges::find(int from, int to, std::vector<End> &ends, std::vector<
                         static_cast<float>(m_blur),
                         static_cast<float>(m_reach),
                         centre.x(),
-                        centre.y()};
+                        centre.y(),
+                        m_aligned};
   const bool sharp = m_blur <= vpEdgeLimits::sharp;
   auto touchAt = [&](int line, float v, double first, double last) {
     const vpLineStretch stretch(centre.x() + first, centre.x() + last, m_lines.cols);

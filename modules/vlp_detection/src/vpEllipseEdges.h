@@ -24,7 +24,7 @@ public:
   //! \param v, u Positions of the lines and of the samples, px. \param reach px on either side of the edge.
   vpEllipseEdges(const cv::Mat_<unsigned char> &lines, const std::vector<double> &v,
                  const std::vector<double> &u, const vpEllipseModel &model, double blur, double reach)
-      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_reach(reach)
+      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_reach(reach), m_aligned(aligned(u))
   {
   }
 
@@ -33,10 +33,22 @@ public:
   void find(int from, int to, std::vector<End> &ends, std::vector<Equations> &along) const;
 
 private:
+  //! Whether each sample lies where its number says.
+  static bool aligned(const std::vector<double> &u)
+  {
+    for (size_t i = 0; i < u.size(); ++i) {
+      if (u[i] != static_cast<double>(i)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   const cv::Mat_<unsigned char> &m_lines;
   const std::vector<double> &m_v, &m_u;
   const vpEllipseModel &m_model;
   double m_blur, m_reach;
+  bool m_aligned;
 };
 
 END_VISP_NAMESPACE

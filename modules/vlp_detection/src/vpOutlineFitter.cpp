@@ -149,7 +149,10 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   auto fits = [&](double blur) {
     return ellipse.run(roi.box, shapeSigma, maxIterations, blur) && holds(ellipse.result(), roi);
   };
-  bool isEllipse = likelyBlur > 0 && fits(likelyBlur);
+  // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
+  static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
+  const bool whole = roi.lampness > nearlyPerfect * vpChordShape::mostLampness(2 * roi.box.height);
+  bool isEllipse = likelyBlur > 0 && whole && fits(likelyBlur) && ellipse.kept() >= nearlyAll;
   if (!isEllipse) {
     ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, start);
     isEllipse = fits(0);

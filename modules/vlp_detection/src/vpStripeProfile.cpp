@@ -64,11 +64,14 @@ public:
   Falloff() = default;
   Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, const vpOutlineFit &fit);
 
+  //! Whether the lamp is about as bright at its rim as in its middle.
+  bool even() const { return m_even; }
+
   //! Light at the samples of a chord, as a share of that at the lamp's middle.
   void along(const Chord &chord, std::vector<double> &shares) const
   {
     shares.assign(static_cast<size_t>(chord.last - chord.first + 1), 1);
-    for (int x = chord.first; m_uneven && x <= chord.last; ++x) {
+    for (int x = chord.first; !m_even && x <= chord.last; ++x) {
       const double place = std::min(squaredRadius(x, chord.line) * perUnit, nodes - 1.001);
       const auto node = static_cast<size_t>(place);
       shares[static_cast<size_t>(x - chord.first)] =
@@ -85,7 +88,7 @@ private:
     return (m_toDisc * (Eigen::Vector2d(sample, line) - m_centre)).squaredNorm();
   }
 
-  bool m_uneven = false;
+  bool m_even = true;
   std::array<double, nodes> m_shares{}; // by squared radius
   Eigen::Vector2d m_centre = Eigen::Vector2d::Zero();
   Eigen::Matrix2d m_toDisc = Eigen::Matrix2d::Identity(); // from the outline to the unit circle
@@ -135,8 +138,11 @@ Falloff::Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> 
   }
   const Eigen::Vector2d solution = H.inverse() * g;
   static const double most = 4; // of the logarithm at the rim: what goes farther is no lamp's falloff
-  m_uneven = solution.allFinite() && std::abs(solution.sum()) < most && solution.norm() < 3 * most;
-  for (size_t node = 0; m_uneven && node < nodes; ++node) {
+  // The envelope of the stripes makes up for so little.
+  static const double little = 0.003;
+  m_even = !(solution.allFinite() && std::abs(solution.sum()) < most && solution.norm() < 3 * most) ||
+           solution.cwiseAbs().sum() < little;
+  for (size_t node = 0; !m_even && node < nodes; ++node) {
     const double r2 = static_cast<double>(node) / perUnit;
     m_shares[node] = std::exp((solution.x() + solution.y() * r2) * r2);
   }
@@ -153,25 +159,64 @@ struct Brightness {
   double value() const { return light / squares; }
 };
 
-//! A line's brightness, from what is not white, or else from all.
-void addLine(vpStripeProfile &profile, const unsigned char *row, const Chord &chord,
-             const std::vector<double> &shares, const vpOutlineFit &fit)
+//! The samples of one line of the lamp.
+class LineSamples
 {
-  Brightness unclipped, clipped;
-  int count = 0; // of the unclipped
-  for (int x = chord.first; x <= chord.last; ++x) {
-    const bool whole = row[x] < white;
-    (whole ? unclipped : clipped).add(shares[static_cast<size_t>(x - chord.first)], row[x] - fit.background);
-    count += whole;
+public:
+  LineSamples(const unsigned char *row, const Chord &chord, const Falloff &falloff, double background)
+      : m_first(row + chord.first), m_count(chord.last - chord.first + 1), m_even(falloff.even()),
+        m_background(background)
+  {
+    if (!m_even) {
+      falloff.along(chord, m_shares);
+    }
   }
-  static const int enough = 4; // samples
-  if (count < enough) {
-    unclipped.light += clipped.light;
-    unclipped.squares += clipped.squares;
+  int count() const { return m_count; }
+
+  //! Of samples \e from to before \e to.
+  Brightness sum(int from, int to) const
+  {
+    Brightness brightness;
+    if (m_even) {
+      int light = 0;
+      for (int i = from; i < to; ++i) {
+        light += m_first[i];
+      }
+      return {light - (to - from) * m_background, static_cast<double>(to - from)};
+    }
+    for (int i = from; i < to; ++i) {
+      brightness.add(m_shares[static_cast<size_t>(i)], m_first[i] - m_background);
+    }
+    return brightness;
   }
-  profile.light.push_back(unclipped.value());
-  profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(unclipped.squares));
-}
+
+  //! Of those that are not white; of all where these are too few.
+  Brightness whole() const
+  {
+    static const int enough = 4; // samples
+    int count = 0;
+    for (int i = 0; i < m_count; ++i) {
+      count += m_first[i] < white;
+    }
+    if (count == m_count || count < enough) {
+      return sum(0, m_count);
+    }
+    Brightness brightness;
+    for (int i = 0; i < m_count; ++i) {
+      if (m_first[i] < white) {
+        brightness.add(m_even ? 1 : m_shares[static_cast<size_t>(i)], m_first[i] - m_background);
+      }
+    }
+    return brightness;
+  }
+
+private:
+  const unsigned char *m_first;
+  int m_count;
+  bool m_even;
+  double m_background;
+  std::vector<double> m_shares;
+};
 
 /*!
   Correlation over the lines of what their left and right halves show, pixel noise taken off: 1 where light
@@ -180,29 +225,22 @@ void addLine(vpStripeProfile &profile, const unsigned char *row, const Chord &ch
 class Agreement
 {
 public:
-  void add(const unsigned char *row, const Chord &chord, const std::vector<double> &shares,
-           const vpOutlineFit &fit)
+  void add(const LineSamples &line, double noise)
   {
     static const int fewest = 8; // samples of a line
-    const int count = chord.last - chord.first + 1, half = count / 2;
-    if (count < fewest) {
+    const int half = line.count() / 2;
+    if (line.count() < fewest) {
       return;
     }
-    auto meanOf = [&](int first) {
-      Brightness sum;
-      for (int x = first; x < first + half; ++x) {
-        sum.add(shares[static_cast<size_t>(x - chord.first)], row[x] - fit.background);
-      }
-      return sum.value();
-    };
-    const double left = meanOf(chord.first), right = meanOf(chord.last - half + 1), weight = count;
+    const double left = line.sum(0, half).value(),
+                 right = line.sum(line.count() - half, line.count()).value(), weight = line.count();
     m_weight += weight;
     m_left += weight * left;
     m_right += weight * right;
     m_leftLeft += weight * left * left;
     m_rightRight += weight * right * right;
     m_leftRight += weight * left * right;
-    m_noise += weight * fit.noise * fit.noise / half;
+    m_noise += weight * noise * noise / half;
   }
 
   double value() const
@@ -270,12 +308,13 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   Agreement agreement;
-  std::vector<double> shares;
   for (const Chord &chord : chords) {
-    falloff.along(chord, shares);
+    const LineSamples line(lines[chord.line], chord, falloff, fit.background);
+    const Brightness brightness = line.whole();
     profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
-    addLine(profile, lines[chord.line], chord, shares, fit);
-    agreement.add(lines[chord.line], chord, shares, fit);
+    profile.light.push_back(brightness.value());
+    profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(brightness.squares));
+    agreement.add(line, fit.noise);
   }
   profile.agreement = agreement.value();
   return profile;
