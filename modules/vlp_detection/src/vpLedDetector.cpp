@@ -202,6 +202,7 @@ void vpLedDetector::check(const vpImage<unsigned char> &I) const
 bool vpLedDetector::detect(const vpImage<unsigned char> &I)
 {
   check(I);
+  m_blur = 0; // a whole picture is seen as if it were alone
   const vpLinePicture picture(I, m_rig.shutter.alongColumns());
   return observe(picture, roiDetector.detect(picture.grey));
 }
