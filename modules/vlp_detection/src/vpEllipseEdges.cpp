@@ -148,7 +148,8 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
   for (int k = 0; k < longest; ++k) {
     Floats grey, u;
     for (int lane = 0; lane < lanes; ++lane) {
-      grey[lane] = ends.row[lane][std::min(ends.from[lane] + k, ends.from[lane] + ends.pixels[lane] - 1)];
+      const int last = std::max(0, ends.pixels[lane] - 1);
+      grey[lane] = ends.row[lane][ends.from[lane] + std::min(k, last)];
     }
     const Floats member = vpLanes::select(count > static_cast<float>(k), all(1), all(0));
     if (ellipse.aligned) {
