@@ -10,7 +10,7 @@
 
 #include <visp3/vlp_core/vpSimdClones.h>
 
-#include "vpLanes.h"
+#include "vpEllipseLanes.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi" // vectors are passed within this file only
 
@@ -18,101 +18,14 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+using vpEllipseLanes::Chord;
+using vpEllipseLanes::Edge;
+using vpEllipseLanes::Ellipse;
+using vpEllipseLanes::Place;
 using vpLanes::all;
 using vpLanes::Floats;
 using vpLanes::Integers;
 constexpr int lanes = vpLanes::count;
-
-//! Of an ellipse |M x| = 1 about its middle.
-struct Ellipse {
-  float uu, uv, vv; // M
-  float radius, blur, reach;
-  double u, v;  // px, its middle
-  bool aligned; // samples lie where their numbers say
-};
-
-//! Where lines meet the ellipse grown by some distance, px from its middle.
-struct Chord {
-  Floats first, last;
-  Integers meets;
-};
-
-VP_LANES_INLINE Chord chordOf(const Ellipse &ellipse, const Floats &v, float distance)
-{
-  const float a = ellipse.uu * ellipse.uu + ellipse.uv * ellipse.uv,
-              perV = ellipse.uu * ellipse.uv + ellipse.uv * ellipse.vv,
-              perV2 = ellipse.uv * ellipse.uv + ellipse.vv * ellipse.vv,
-              grown = 1 + distance / ellipse.radius;
-  const Floats b = perV * v, discriminant = b * b - a * (perV2 * v * v - grown * grown);
-  const Integers meets = (discriminant > 0) & Integers(all(grown) > 0);
-  const Floats half = vpLanes::root(vpLanes::select(meets, discriminant, all(0)));
-  return {(-b - half) / a, (-b + half) / a, meets};
-}
-
-//! A pixel as the ellipse sees it.
-struct Place {
-  Floats x0, x1;           // M x
-  Floats rho, perSlope;    // |M x|, 1 / |M M x|
-  Floats normalU, normalV; // of the outline nearest to it
-  Floats distance;         // px outside of it, to first order
-};
-
-VP_LANES_INLINE Place placeOf(const Ellipse &ellipse, const Floats &u, const Floats &v)
-{
-  Place at;
-  at.x0 = ellipse.uu * u + ellipse.uv * v;
-  at.x1 = ellipse.uv * u + ellipse.vv * v;
-  const Floats gradientU = ellipse.uu * at.x0 + ellipse.uv * at.x1,
-               gradientV = ellipse.uv * at.x0 + ellipse.vv * at.x1;
-  at.rho = vpLanes::root(at.x0 * at.x0 + at.x1 * at.x1);
-  at.perSlope = 1 / vpLanes::most(vpLanes::root(gradientU * gradientU + gradientV * gradientV), all(1e-12f));
-  at.normalU = gradientU * at.perSlope;
-  at.normalV = gradientV * at.perSlope;
-  at.distance = (at.rho - 1) * at.rho * at.perSlope;
-  return at;
-}
-
-//! How the edge there moves outwards with the parameters of vpEllipseModel.
-VP_LANES_INLINE std::array<Floats, 5> outwardAt(const Place &at)
-{
-  return {at.normalU, at.normalV, at.perSlope * at.rho * at.rho,
-          0.5f * at.perSlope * (at.x0 * at.x0 - at.x1 * at.x1), at.perSlope * at.x0 * at.x1};
-}
-
-//! Of pixels about straight edges: vpPixelEdge, eight at a time.
-struct Edge {
-  Floats share, byShift, byBlur;
-};
-
-//! A Gaussian of the same variance takes the place of the pixel's square.
-VP_LANES_INLINE Edge smoothEdge(const Floats &distance, float blur)
-{
-  const float perSpread = 1 / std::sqrt(blur * blur + 1 / 12.f);
-  const Floats z = -distance * perSpread;
-  const vpLanes::Normal normal = vpLanes::normal(z);
-  return {normal.below, normal.density * perSpread, -z * normal.density * (blur * perSpread * perSpread)};
-}
-
-VP_LANES_INLINE Edge sharpEdge(const Floats &distance, const Floats &normalU, const Floats &normalV,
-                               float blur)
-{
-  static constexpr float narrowest = 0.02f;
-  const Floats p = vpLanes::most(0.5f * vpLanes::magnitude(normalU), all(narrowest)),
-               q = vpLanes::most(0.5f * vpLanes::magnitude(normalV), all(narrowest));
-  const float perBlur = 1 / blur;
-  Edge edge{all(0), all(0), all(0)};
-  for (int corner = 0; corner < 4; ++corner) {
-    const float sideP = corner < 2 ? 1 : -1, sideQ = corner % 2 == 0 ? 1 : -1, sign = sideP * sideQ;
-    const Floats z = (sideP * p + sideQ * q - distance) * perBlur;
-    const vpLanes::Normal normal = vpLanes::normal(z);
-    const Floats once = z * normal.below + normal.density;
-    edge.share += sign * 0.5f * (z * once + normal.below);
-    edge.byShift += sign * once;
-    edge.byBlur += sign * normal.below;
-  }
-  const Floats perArea = blur / (4 * p * q);
-  return {edge.share * perArea * blur, edge.byShift * perArea, edge.byBlur * perArea};
-}
 
 //! Eight ends of lines.
 struct Ends {
@@ -132,8 +45,8 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
                             Found &found)
 {
   const int longest = *std::max_element(ends.pixels.begin(), ends.pixels.end());
-  const Place crossing = placeOf(ellipse, ends.crossing, ends.v);
-  found.outward = outwardAt(crossing);
+  const Place crossing = vpEllipseLanes::placeOf(ellipse, ends.crossing, ends.v);
+  found.outward = vpEllipseLanes::outwardAt(crossing);
   Floats reference, count, first; // first: of the samples, px from the ellipse's middle
   for (int lane = 0; lane < lanes; ++lane) {
     const int n = ends.pixels[lane];
@@ -160,9 +73,10 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
         u[lane] = static_cast<float>(samples[sample] - ellipse.u);
       }
     }
-    const Floats distance = placeOf(ellipse, u, ends.v).distance;
-    const Edge edge = sharp ? sharpEdge(distance, crossing.normalU, crossing.normalV, ellipse.blur)
-                            : smoothEdge(distance, ellipse.blur);
+    const Floats distance = vpEllipseLanes::placeOf(ellipse, u, ends.v).distance;
+    const Edge edge =
+        sharp ? vpEllipseLanes::sharpEdge(distance, crossing.normalU, crossing.normalV, ellipse.blur)
+              : vpEllipseLanes::smoothEdge(distance, ellipse.blur);
     const Floats i = member * (grey - reference), d = member * edge.share, s = member * edge.byShift,
                  b = member * edge.byBlur;
     most = vpLanes::most(most, d);
@@ -221,15 +135,15 @@ VP_SIMD_CLONES void measure(Touch &touch, const Ellipse &ellipse, bool sharp)
       u[lane] = static_cast<float>(touch.sample[sample] - ellipse.u);
       member[lane] = inside ? 1.f : 0.f;
     }
-    const Place at = placeOf(ellipse, u, all(touch.v));
-    const Edge edge = sharp ? sharpEdge(at.distance, at.normalU, at.normalV, ellipse.blur)
-                            : smoothEdge(at.distance, ellipse.blur);
+    const Place at = vpEllipseLanes::placeOf(ellipse, u, all(touch.v));
+    const Edge edge = sharp ? vpEllipseLanes::sharpEdge(at.distance, at.normalU, at.normalV, ellipse.blur)
+                            : vpEllipseLanes::smoothEdge(at.distance, ellipse.blur);
     std::array<Floats, Touch::all> column;
     column[Touch::one] = member;
     column[Touch::share] = member * edge.share;
     column[Touch::grey] = member * (grey - touch.reference);
     column[Touch::shift] = member * edge.byShift;
-    const std::array<Floats, 5> outward = outwardAt(at);
+    const std::array<Floats, 5> outward = vpEllipseLanes::outwardAt(at);
     for (size_t p = 0; p < outward.size(); ++p) {
       column[Touch::first + p] = column[Touch::shift] * outward[p];
     }
@@ -261,9 +175,9 @@ VP_SIMD_CLONES void measure(Touch &touch, const Ellipse &ellipse, bool sharp)
 
 VP_SIMD_CLONES void chords(const Ellipse &ellipse, const Floats &v, Chord &outer, Chord &edge, Chord &inner)
 {
-  outer = chordOf(ellipse, v, ellipse.reach);
-  edge = chordOf(ellipse, v, 0);
-  inner = chordOf(ellipse, v, -ellipse.reach);
+  outer = vpEllipseLanes::chordOf(ellipse, v, ellipse.reach);
+  edge = vpEllipseLanes::chordOf(ellipse, v, 0);
+  inner = vpEllipseLanes::chordOf(ellipse, v, -ellipse.reach);
 }
 
 //! What is left of the sums once a mean and a multiple of D are taken off, as an end of a line.
