@@ -3,7 +3,8 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // False acceptance: how often what is no lamp of the map gets an id, while true lamps get theirs.
-// bench_acceptance [LAMPS] [true|strangers|steady|all] [SEED]: other seeds make other maps and lamps
+// bench_acceptance [LAMPS] [true|strangers|steady|all] [SEED] [random|planned]: other seeds make other maps
+// and lamps. Planned maps are those of vpLedIdPlanner. To be run from the top of the repository.
 
 #include <cstdio>
 #include <cstdlib>
@@ -11,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_detection/vpLedIdPlanner.h>
 #include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
 
 #include "vpSimulatedStripes.h"
@@ -50,12 +53,35 @@ vpLampMap lampsOf(int count, bool duties, unsigned int seed)
   return map;
 }
 
-std::vector<Map> maps(unsigned int seed)
+//! As vpLedIdPlanner lays them out for whole lamps of 146 lines; those that state no duty all at 0.5.
+vpLampMap plannedLamps(size_t count, bool duties)
+{
+  const vpSimulatedStripes stripes;
+  vpVlpRig rig = vpVlpRig::load("data/rigs/ub300-2048x1536.yaml");
+  rig.shutter.rowTimeSigma = rowTimeSigma * rig.shutter.rowTime;
+  vpLedIdPlanner planner(rig);
+  planner.lowestFrequency = lowest;
+  planner.highestFrequency = highest;
+  if (!duties) {
+    planner.duties = {0.5};
+  }
+  vpLampMap map = vpMapOf(planner.spread(stripes.lines, stripes.oscillator, count).identifiers);
+  for (vpLamp &lamp : map.lamps) {
+    if (!duties) {
+      lamp.modulation.duty.reset();
+    }
+  }
+  return map;
+}
+
+std::vector<Map> maps(bool planned, unsigned int seed)
 {
   std::vector<Map> all;
   for (bool duties : {true, false}) {
     for (int count : {4, 50, 200}) {
-      all.push_back({duties ? "stated" : "not stated", lampsOf(count, duties, seed)});
+      all.push_back({duties ? "stated" : "not stated", planned
+                                                           ? plannedLamps(static_cast<size_t>(count), duties)
+                                                           : lampsOf(count, duties, seed)});
     }
   }
   return all;
@@ -317,7 +343,8 @@ int main(int argc, char **argv)
   const int lamps = argc > 1 ? std::atoi(argv[1]) : 10000;
   const std::string part = argc > 2 ? argv[2] : "all";
   const unsigned int seed = argc > 3 ? static_cast<unsigned int>(std::atoi(argv[3])) : 0;
-  const std::vector<Map> all = maps(seed);
+  const bool planned = argc > 4 && std::string(argv[4]) == "planned";
+  const std::vector<Map> all = maps(planned, seed);
   if (part == "all" || part == "true") {
     for (const Map &map : all) {
       trueLamps(map, lamps, seed);
