@@ -171,7 +171,8 @@ void vpEdgeFit<Model>::addEnds(int from, int to)
 template <>
 void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to)
 {
-  vpEllipseEdges(*m_lines, *m_v, *m_u, m_model, m_blur, m_reach).find(from, to, m_ends, m_along);
+  vpEllipseEdges(*m_lines, *m_v, *m_u, m_model, m_blur, m_reach)
+      .find(vpEllipseEdges::linesOf(*m_lines, from, to, m_model, m_every, m_litOnly), m_ends, m_along);
 }
 
 template <class Model>
@@ -256,6 +257,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   m_misfit = pixels > 0 ? chiSquare / pixels : 0;
   m_pixels = pixels;
   m_members = members;
+  m_shining = m_ends.empty() ? 0 : static_cast<double>(m_sorted.size()) / static_cast<double>(m_ends.size());
   m_kept = m_sorted.empty() ? 0 : kept / static_cast<double>(m_sorted.size());
 }
 
@@ -266,8 +268,27 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
 template <class Model>
 bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations, double likelyBlur)
 {
+  static const double still = 1e-3; // px
+  const double radius = m_model.radius();
+  m_blur = likelyBlur > 0 ? likelyBlur : std::clamp(0.03 * radius, 0.7, 4.0);
+  return descend(box, shapeSigma, maxIterations, 0, still);
+}
+
+template <class Model>
+bool vpEdgeFit<Model>::runNear(const cv::Rect &box, double shapeSigma, int maxIterations, double blur)
+{
+  static const int sparse = 2;       // steps by a part of the lines
+  static const double nearly = 0.02; // px: the step after one as short would be a fiftieth of it
+  m_blur = blur;
+  return descend(box, shapeSigma, maxIterations, sparse, nearly);
+}
+
+//! \param sparse So many of the first steps are by a third of the lines. \param still px, of the last step.
+template <class Model>
+bool vpEdgeFit<Model>::descend(const cv::Rect &box, double shapeSigma, int maxIterations, int sparse,
+                               double still)
+{
   static const double fewest = 3;     // ends
-  static const double still = 1e-3;   // px
   static const double sharpest = 0.1; // px of blur; the pixels themselves hide anything sharper
   Eigen::MatrixXd H, data;
   Eigen::VectorXd g;
@@ -275,12 +296,19 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterat
   const double radius = m_model.radius();
   const double widest = 0.15 * radius + 1;
   const Eigen::Vector2d start = m_model.centre();
-  m_blur = likelyBlur > 0 ? std::clamp(likelyBlur, sharpest, widest) : std::clamp(0.03 * radius, 0.7, 4.0);
+  m_blur = std::clamp(m_blur, sharpest, widest);
+  m_litOnly = sparse > 0;
+  static const double many = 12; // ends, of all directions by chance alone
   int soft = 0;
   for (int i = 0; i < maxIterations; ++i) {
+    m_every = i < sparse ? 3 : 1;
     m_reach = std::clamp(3 * m_blur + 2, 4.0, std::max(4.0, 0.4 * m_model.radius()));
     findEnds();
     assemble(equations);
+    if (m_every > 1 && m_members < many) { // the others may all be dark
+      sparse = 0;
+      continue;
+    }
     soft = m_blur >= widest ? soft + 1 : 0;
     if (m_members < fewest || soft > 2) {
       return false;
@@ -306,7 +334,9 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterat
     if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
       return false;
     }
-    if (outlineStep.cwiseAbs().maxCoeff() < still && std::abs(m_blur - blur) < 10 * still) {
+    static const double ofBlur = 10; // which moves no edge
+    if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < still &&
+        std::abs(m_blur - blur) < ofBlur * still) {
       break;
     }
   }

@@ -84,6 +84,8 @@ public:
 
   //! \param likelyBlur px, to begin with; 0: one that suits the size.
   bool run(const cv::Rect &box, double shapeSigma, int maxIterations, double likelyBlur = 0);
+  //! The same from a start that is good to a pixel or so: first by some of the lines, then by all.
+  bool runNear(const cv::Rect &box, double shapeSigma, int maxIterations, double blur);
   vpOutlineFit result() const;
   //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc.
   double evenness() const;
@@ -93,6 +95,8 @@ public:
   double pixels() const { return m_pixels; }
   //! Share of the lit ends that take part: others are far from where the outline has them.
   double kept() const { return m_kept; }
+  //! Share of the ends looked at that are lit: after runNear() nearly all are, of a lamp that nothing hides.
+  double shining() const { return m_shining; }
   //! Chi-square of the shape's prior.
   double prior() const { return m_prior; }
 
@@ -101,6 +105,7 @@ private:
   void addAlong(int line, const vpLineStretch &pixels);
   void addEnds(int from, int to);
   void findEnds();
+  bool descend(const cv::Rect &box, double shapeSigma, int maxIterations, int sparse, double still);
   void assemble(Equations &equations);
 
   const cv::Mat_<unsigned char> *m_lines;
@@ -108,7 +113,9 @@ private:
   const std::vector<double> *m_u;
   Model m_model;
   double m_blur = 1.5;
-  double m_reach = 0; // px on either side of the edge
+  double m_reach = 0;     // px on either side of the edge
+  int m_every = 1;        // so many lines are looked at one of, eight at a time
+  bool m_litOnly = false; // dark lines are not looked at
   Eigen::MatrixXd m_covariance;
   double m_residual = 0;
   double m_inflation = 1;
@@ -118,7 +125,7 @@ private:
   double m_pixels = 0;
   double m_prior = 0;
   double m_members = 0; // ends that take part
-  double m_kept = 0;
+  double m_kept = 0, m_shining = 0;
   std::vector<End> m_ends;
   std::vector<Equations> m_along; // of ends that run along their line
   std::vector<int> m_touched;     // lines

@@ -228,7 +228,41 @@ vpEllipseEdges::End endOf(const Found &side, int lane)
 }
 } // namespace
 
-void vpEllipseEdges::find(int from, int to, std::vector<End> &ends, std::vector<Equations> &along) const
+std::vector<int> vpEllipseEdges::linesOf(const cv::Mat_<unsigned char> &lines, int from, int to,
+                                         const vpEllipseModel &model, int every, bool litOnly)
+{
+  std::vector<int> some;
+  for (int block = from; block <= to; block += lanes * every) {
+    for (int line = block; line <= std::min(to, block + lanes - 1); ++line) {
+      some.push_back(line);
+    }
+  }
+  if (!litOnly || some.empty()) {
+    return some;
+  }
+  // About the middle, where no part of the outline is but at the lamp's ends.
+  static const int apart = 5; // samples
+  const int middle = std::clamp(static_cast<int>(model.centre().x()), 2 * apart, lines.cols - 1 - 2 * apart);
+  std::vector<int> light;
+  for (int line : some) {
+    const unsigned char *row = lines[line] + middle;
+    light.push_back(row[-2 * apart] + row[-apart] + row[0] + row[apart] + row[2 * apart]);
+  }
+  const auto [least, most] = std::minmax_element(light.begin(), light.end());
+  static const double dark = 0.2; // share of the swing
+  const double limit = *least + dark * (*most - *least);
+  size_t kept = 0;
+  for (size_t i = 0; i < some.size(); ++i) {
+    if (light[i] >= limit) {
+      some[kept++] = some[i];
+    }
+  }
+  some.resize(kept);
+  return some;
+}
+
+void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,
+                          std::vector<Equations> &along) const
 {
   const Eigen::Matrix2d &shape = m_model.shape();
   const Eigen::Vector2d centre = m_model.centre();
@@ -266,11 +300,13 @@ void vpEllipseEdges::find(int from, int to, std::vector<End> &ends, std::vector<
       ends.push_back(end);
     }
   };
-  for (int line = from; line <= to; line += lanes) {
+  const int count = static_cast<int>(lines.size());
+  for (int block = 0; block < count; block += lanes) {
+    auto lineOf = [&](int lane) { return lines[static_cast<size_t>(std::min(block + lane, count - 1))]; };
     std::array<Ends, 2> sides; // where the outline begins on the line, and where it ends
     Floats v;
     for (int lane = 0; lane < lanes; ++lane) {
-      v[lane] = static_cast<float>(m_v[static_cast<size_t>(std::min(line + lane, to))] - centre.y());
+      v[lane] = static_cast<float>(m_v[static_cast<size_t>(lineOf(lane))] - centre.y());
     }
     Chord outer, edge, inner;
     chords(ellipse, v, outer, edge, inner);
@@ -281,16 +317,16 @@ void vpEllipseEdges::find(int from, int to, std::vector<End> &ends, std::vector<
       side.pixels.fill(0);
       side.from.fill(0);
       for (int lane = 0; lane < lanes; ++lane) {
-        side.row[lane] = m_lines[std::min(line + lane, to)];
+        side.row[lane] = m_lines[lineOf(lane)];
       }
     }
     bool any = false;
-    for (int lane = 0; lane < lanes && line + lane <= to; ++lane) {
+    for (int lane = 0; lane < lanes && block + lane < count; ++lane) {
       if (edge.meets[lane] == 0 || outer.meets[lane] == 0) {
         continue;
       }
       if (inner.meets[lane] == 0 || inner.last[lane] - inner.first[lane] <= 1) {
-        touchAt(line + lane, v[lane], outer.first[lane], outer.last[lane]);
+        touchAt(lineOf(lane), v[lane], outer.first[lane], outer.last[lane]);
         continue;
       }
       auto place = [&](Ends &side, double first, double last) {
@@ -314,7 +350,7 @@ void vpEllipseEdges::find(int from, int to, std::vector<End> &ends, std::vector<
       for (size_t s = 0; s < 2; ++s) {
         if (sides[s].pixels[lane] > 0 && found[s].valid[lane] != 0) {
           ends.push_back(endOf(found[s], lane));
-          ends.back().line = line + lane;
+          ends.back().line = lineOf(lane);
           ends.back().pixels = sides[s].pixels[lane];
         }
       }

@@ -28,9 +28,16 @@ public:
   {
   }
 
-  //! Appends the ends of lines \e from to \e to; where the outline runs along a line, one end for both, whose
-  //! equations are appended to \e along.
-  void find(int from, int to, std::vector<End> &ends, std::vector<Equations> &along) const;
+  /*!
+    Of the lines from \e from to \e to one of \e every eight; only those that are lit in their middle, about,
+    where \e litOnly: the ends of others show nothing.
+  */
+  static std::vector<int> linesOf(const cv::Mat_<unsigned char> &lines, int from, int to,
+                                  const vpEllipseModel &model, int every, bool litOnly);
+
+  //! Appends the ends of these lines; where the outline runs along a line, one end for both, whose equations
+  //! are appended to \e along.
+  void find(const std::vector<int> &lines, std::vector<End> &ends, std::vector<Equations> &along) const;
 
 private:
   //! Whether each sample lies where its number says.

@@ -13,6 +13,8 @@
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpRect.h>
 
+#include "vpLampGlance.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -226,6 +228,34 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I, const std::vector<vp
   return observe(picture, std::move(rois));
 }
 
+bool vpLedDetector::glance(const vpImage<unsigned char> &I, vpLampObservation &lamp)
+{
+  check(I);
+  if (!vpLampGlance::suits(lamp) || m_rig.shutter.alongColumns()) {
+    return false;
+  }
+  const vpLinePicture picture(I, false);
+  vpLampGlance found;
+  if (!found.find(picture, m_timing, lamp, outlineFitter.shapeSigma)) {
+    return false;
+  }
+  place(lamp, found.fit, false);
+  lamp.features.area = found.area();
+  m_blur = found.fit.blur;
+  return true;
+}
+
+//! Where the lamp is, by its outline.
+void vpLedDetector::place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const
+{
+  lamp.outline = transposed ? swapped(fit.outline) : fit.outline;
+  lamp.point = lamp.outline.middle(m_rig.camera, verticalInCamera(m_rig.bMc));
+  lamp.covariance = lamp.outline.centreCovariance;
+  lamp.time = m_timing.middleAt(transposed ? lamp.point.x() : lamp.point.y());
+  lamp.blur = fit.blur;
+  lamp.noise = fit.noise;
+}
+
 //! All that follows from the regions.
 bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois)
 {
@@ -297,10 +327,7 @@ vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpL
   }
   lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit, roi));
   measureArea(picture, roi, lamp);
-  lamp.outline = picture.transposed ? swapped(fit.outline) : fit.outline;
-  lamp.point = lamp.outline.middle(m_rig.camera, verticalInCamera(m_rig.bMc));
-  lamp.covariance = lamp.outline.centreCovariance;
-  lamp.time = m_timing.middleAt(picture.transposed ? lamp.point.x() : lamp.point.y());
+  place(lamp, fit, picture.transposed);
   lamp.cut = roi.cutAcross || roi.cutAlong;
   const Eigen::Vector2d &centre = fit.outline.centre;
   if (lamp.cut && !(centre.x() >= 0 && centre.x() < picture.grey.cols && centre.y() >= 0 &&

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-#include <opencv2/core/hal/intrin.hpp>
+#include "vpBrighter.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -33,35 +33,14 @@ int brightest(const unsigned char *row, int first, int last)
   return most;
 }
 
-constexpr int block = 64; // samples
-
-//! Bit i is set where sample i of a block is brighter than \e grey.
-std::uint64_t brighter(const unsigned char *row, int samples, unsigned char grey)
-{
-  std::uint64_t mask = 0;
-  if (samples < block) {
-    for (int i = 0; i < samples; ++i) {
-      mask |= static_cast<std::uint64_t>(row[i] > grey) << i;
-    }
-    return mask;
-  }
-  const cv::v_uint8x16 threshold = cv::v_setall_u8(grey);
-  static constexpr int width = cv::v_uint8x16::nlanes;
-  for (int i = 0; i < block; i += width) {
-    const auto part = static_cast<std::uint64_t>(cv::v_signmask(cv::v_load(row + i) > threshold));
-    mask |= part << i;
-  }
-  return mask;
-}
-
 //! Appends the runs of line \e y, from sample \e first to \e last, that are brighter than \e grey.
 void scan(const unsigned char *row, int y, int first, int last, unsigned char grey, int parent,
           std::vector<Run> &runs)
 {
   int start = -1; // of the run at hand
-  for (int x = first; x <= last; x += block) {
-    const int samples = std::min(block, last - x + 1);
-    const std::uint64_t mask = brighter(row + x, samples, grey);
+  for (int x = first; x <= last; x += vpBrighter::block) {
+    const int samples = std::min(vpBrighter::block, last - x + 1);
+    const std::uint64_t mask = vpBrighter::mask(row + x, samples, grey);
     for (int i = 0; i < samples;) {
       const std::uint64_t left = (start < 0 ? mask : ~mask) >> i;
       if (left == 0) {

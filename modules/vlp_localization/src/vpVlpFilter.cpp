@@ -166,12 +166,9 @@ void vpVlpFilter::mark(double time)
   }
   advance(time);
   m_markTime = m_time;
-  const Eigen::Index n = m_x.size();
-  Matrix copy = Matrix::Identity(n, n);
-  copy.block<6, 6>(mark0, mark0).setZero();
-  copy.block<6, 6>(mark0, x).setIdentity();
   m_x.segment<6>(mark0) = m_x.head<6>();
-  m_P = copy * m_P * copy.transpose();
+  m_P.middleRows<6>(mark0) = m_P.middleRows<6>(x).eval();
+  m_P.middleCols<6>(mark0) = m_P.middleCols<6>(x).eval();
 }
 
 //! Of the lamp's error in the state, -1 where it has none.
@@ -280,7 +277,8 @@ void vpVlpFilter::weighNoise(const vpLampSight &lamp)
 void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matrix &R)
 {
   const Matrix PH = m_P * H.transpose();
-  Matrix K = (H * PH + R).ldlt().solve(PH.transpose()).transpose();
+  const Matrix S = H * PH + R;
+  Matrix K = S.ldlt().solve(PH.transpose()).transpose();
   // Errors of mount, lens and map are considered, not estimated: a hundredth of a pixel, seen again and again
   // about ever other linearisations, would seem to tell them.
   K.middleRows(mount, mark0 - mount).setZero();
@@ -288,8 +286,9 @@ void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matri
   const Vector correction = K * innovation;
   m_x += correction;
   m_x(yaw) = std::remainder(m_x(yaw), 2 * M_PI);
-  const Matrix rest = Matrix::Identity(m_x.size(), m_x.size()) - K * H;
-  m_P = rest * m_P * rest.transpose() + K * R * K.transpose();
+  // Joseph's form, which holds for any gain, multiplied out: H has few rows.
+  const Matrix KPH = K * PH.transpose();
+  m_P += K * S * K.transpose() - KPH - KPH.transpose();
   // A turn about the lamp, which its ray does not tell, is to stay untold once the place was corrected, else
   // corrections alone would tell the heading. So the covariance is that of the right-invariant error (Barrau
   // and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.

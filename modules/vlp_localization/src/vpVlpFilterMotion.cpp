@@ -63,13 +63,17 @@ void vpVlpFilter::move(double dt, bool accelerates)
   m_x.head<2>() += chord * dt * ahead;
   m_x(yaw) = std::remainder(m_x(yaw) + m_x(w) * dt, 2 * M_PI);
 
-  const Eigen::Index n = m_x.size();
-  Matrix F = Matrix::Identity(n, n);
-  F.block<2, 1>(x, yaw) = chord * dt * left;
-  F.block<2, 2>(x, vx) = dt * R.toRotationMatrix();
-  F.block<2, 1>(x, w) = 0.5 * dt * dt * left;
-  F(yaw, w) = dt;
-  m_P = F * m_P * F.transpose();
+  // P = F P F', F being the identity but for the rows of x, y and yaw.
+  const Eigen::Matrix2d turned = dt * R.toRotationMatrix();
+  auto carry = [&](auto &&P) { // by rows
+    P.row(x) += chord * dt * left.x() * P.row(yaw) + turned(0, 0) * P.row(vx) + turned(0, 1) * P.row(vy) +
+                0.5 * dt * dt * left.x() * P.row(w);
+    P.row(y) += chord * dt * left.y() * P.row(yaw) + turned(1, 0) * P.row(vx) + turned(1, 1) * P.row(vy) +
+                0.5 * dt * dt * left.y() * P.row(w);
+    P.row(yaw) += dt * P.row(w);
+  };
+  carry(m_P);
+  carry(m_P.transpose());
 
   const double t = std::abs(dt);
   static const double least = 0.01; // of the drift: lamps' outlines are not wrong anew in every frame

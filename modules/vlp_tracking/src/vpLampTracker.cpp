@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -66,8 +67,10 @@ struct vpLampTracker::Track {
   bool taken = false;  // by an observation of the frame at hand
   vpRect place;        // px, where it was seen last
   bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
-  std::vector<unsigned char> look; // pixels of the place, line by line
+  std::vector<unsigned char> look;        // pixels of the place, line by line
+  std::optional<vpLampObservation> known; // as it was seen last, where a glance may find it again
 
+  void learn(const vpLampObservation &seen, unsigned int sure);
   void remember(const vpImage<unsigned char> &I);
   bool shown() const { return !look.empty(); }
   bool showsAgain(const vpImage<unsigned char> &I) const;
@@ -83,6 +86,17 @@ void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
              height = static_cast<unsigned int>(place.getHeight());
   for (unsigned int v = top; v < top + height; ++v) {
     look.insert(look.end(), I[v] + left, I[v] + left + width);
+  }
+}
+
+//! A lamp that is recognised beyond doubt may be found by a glance in the next frame.
+void vpLampTracker::Track::learn(const vpLampObservation &seen, unsigned int sure)
+{
+  const bool decided = seen.candidates.size() <= 1 && seen.confidence > 0.99;
+  if (decided && evidence.frames() >= sure) {
+    known = seen;
+  } else {
+    known.reset();
   }
 }
 
@@ -132,24 +146,41 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
                         [&frame](const Track &track) { return !track.shown() || track.showsAgain(frame.I); });
   // Windows from the target trackers, a strip in search of new lamps, or all of the picture.
   m_searched = windows(frame, expected);
+  m_observations.clear();
+  m_trackOf.clear();
   if (m_inSight < needed) {
     m_searched.clear();
     detector.detect(frame.I);
+    m_observations = detector.observations();
   } else {
-    detector.detect(frame.I, m_searched);
+    glance(frame.I);
+    search(frame.I);
   }
-  m_observations = detector.observations();
 
   // Which region is which lamp; what all its frames say of it; what is new.
+  const size_t glanced = m_trackOf.size();
   assign();
   for (size_t i = 0; i < m_observations.size(); ++i) {
-    if (m_trackOf[i] >= 0) {
+    if (i < glanced) {
+      followGlanced(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
+    } else if (m_trackOf[i] >= 0) {
       follow(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
     } else if (blinks(m_observations[i])) {
       bear(m_observations[i], frame);
     }
   }
-  detector.recognizer.recognize(m_observations);
+  if (m_observations.size() > glanced) { // else all is known as it is
+    detector.recognizer.recognize(m_observations);
+  }
+  for (size_t i = 0; i < m_observations.size(); ++i) {
+    if (m_trackOf[i] >= 0) {
+      m_tracks[static_cast<size_t>(m_trackOf[i])].learn(m_observations[i], sure);
+    }
+  }
+  std::stable_sort(m_observations.begin(), m_observations.end(),
+                   [](const vpLampObservation &a, const vpLampObservation &b) {
+                     return a.features.area > b.features.area;
+                   });
   m_inSight = static_cast<size_t>(
       std::count_if(m_observations.begin(), m_observations.end(),
                     [](const vpLampObservation &seen) { return !seen.candidates.empty(); }));
@@ -160,6 +191,70 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
     track.remember(frame.I);
   }
   return m_observations;
+}
+
+//! The lamps that are where their targets are, and as they were.
+void vpLampTracker::glance(const vpImage<unsigned char> &I)
+{
+  for (size_t t = 0; t < m_tracks.size(); ++t) {
+    Track &track = m_tracks[t];
+    if (!track.known || track.astray) {
+      continue;
+    }
+    vpLampObservation lamp = *track.known;
+    const vpImagePoint now = track.target->center();
+    lamp.outline.centre = {now.get_u(), now.get_v()};
+    if (detector.glance(I, lamp)) {
+      track.taken = true;
+      m_observations.push_back(std::move(lamp));
+      m_trackOf.push_back(static_cast<int>(t));
+    }
+  }
+}
+
+//! What glances left open: lamps that were not found, and other windows that show more than lamps that were.
+void vpLampTracker::search(const vpImage<unsigned char> &I)
+{
+  static const double halo = 0.1, beyond = 4; // of a lamp's extent; px
+  std::vector<vpRect> known, open;
+  double noise = 0; // grey levels
+  for (const vpLampObservation &lamp : m_observations) {
+    const vpRect box = boxOf(lamp.outline);
+    const double wider = halo + beyond / std::max(1.0, std::min(box.getWidth(), box.getHeight()));
+    known.push_back(widened(box, wider));
+    noise = std::max(noise, lamp.noise);
+  }
+  auto shown = [this](const vpRect &window) { // the lamp that is expected there
+    return std::any_of(m_observations.begin(), m_observations.end(),
+                       [&window](const vpLampObservation &lamp) {
+                         return window.isInside({lamp.outline.centre.y(), lamp.outline.centre.x()});
+                       });
+  };
+  for (size_t w = 0; w < m_searched.size(); ++w) {
+    const bool strip = w + 1 == m_searched.size(), target = w < m_tracks.size();
+    const bool found = target ? m_tracks[w].taken : !strip && shown(m_searched[w]);
+    if (!found && (target || known.empty() || detector.showsMore(I, m_searched[w], known, noise))) {
+      open.push_back(m_searched[w]);
+    }
+  }
+  if (open.empty()) {
+    return;
+  }
+  detector.detect(I, open);
+  for (const vpLampObservation &seen : detector.observations()) {
+    const vpImagePoint middle(seen.outline.centre.y(), seen.outline.centre.x());
+    const vpRect box = boxOf(seen.outline);
+    const bool twice =
+        std::any_of(m_observations.begin(), m_observations.begin() + static_cast<long>(known.size()),
+                    [&](const vpLampObservation &lamp) {
+                      static const double same = 0.3;
+                      const vpRect other = boxOf(lamp.outline);
+                      return other.isInside(middle) || overlap(box, other) > same;
+                    });
+    if (!twice) {
+      m_observations.push_back(seen);
+    }
+  }
 }
 
 //! Where to look: around each target, where lamps are expected, and the strip whose turn it is.
@@ -200,6 +295,9 @@ void vpLampTracker::assign()
   std::vector<std::tuple<double, size_t, size_t>> pairs;
   for (size_t i = 0; i < m_observations.size(); ++i) {
     const vpLampObservation &seen = m_observations[i];
+    if (i < m_trackOf.size()) {
+      continue; // found by a glance
+    }
     if (!blinks(seen) && seen.features.signal != vpStripeFeatures::Signal::unmodulated) {
       continue;
     }
@@ -217,7 +315,7 @@ void vpLampTracker::assign()
     }
   }
   std::sort(pairs.begin(), pairs.end());
-  m_trackOf.assign(m_observations.size(), -1);
+  m_trackOf.resize(m_observations.size(), -1);
   for (const auto &[cost, i, t] : pairs) {
     if (m_trackOf[i] < 0 && !m_tracks[t].taken) {
       m_trackOf[i] = static_cast<int>(t);
@@ -232,6 +330,13 @@ void vpLampTracker::assign()
         });
     track.astray = track.astray || (!track.taken && another);
   }
+}
+
+//! What a glance found is as it was.
+void vpLampTracker::followGlanced(Track &track, vpLampObservation &seen, const vpVlpFrame &frame)
+{
+  track.seenLast = frame.timestamp;
+  setRight(track, seen, frame);
 }
 
 //! Adds what a frame says of a lamp to what is known of it.
@@ -250,6 +355,12 @@ void vpLampTracker::follow(Track &track, vpLampObservation &seen, const vpVlpFra
     }
     track.seenLast = frame.timestamp;
   }
+  setRight(track, seen, frame);
+}
+
+//! The target tracker goes on from where the lamp is.
+void vpLampTracker::setRight(Track &track, vpLampObservation &seen, const vpVlpFrame &frame)
+{
   seen.track = track.number;
   static const double alike = 0.7;
   const vpRect box = inside(boxOf(seen.outline), frame.I);

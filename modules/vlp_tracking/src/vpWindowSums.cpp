@@ -12,18 +12,18 @@ void vpKernelAxis::set(double centre, double length, double targetLength, unsign
   const double half = length / 2;
   const int begin = static_cast<int>(std::ceil(centre - half)),
             end = static_cast<int>(std::floor(centre + half)) + 1;
-  auto clipped = [pixels](int x) { return std::clamp(x, 0, static_cast<int>(pixels)); };
-  first = clipped(begin);
+  step = stepOf(length);
   middle = centre;
-  weights.assign(static_cast<size_t>(clipped(end) - first), 0);
+  weights.clear();
   double all = 0, chords = 0;
-  sum = targetMean = 0;
-  for (int i = begin; i < end; ++i) {
+  sum = targetMean = first = 0;
+  for (int i = begin; i < end; i += step) {
     const double x = i - centre;
     const int weight = static_cast<int>(whole * (1 - x * x / (half * half)));
     all += weight;
     if (i >= 0 && i < static_cast<int>(pixels)) {
-      weights[static_cast<size_t>(i - first)] = weight;
+      first = weights.empty() ? i : first;
+      weights.push_back(weight);
       sum += weight;
       const double chord = std::sqrt(std::max(0.0, 1 - 4 * x * x / (targetLength * targetLength)));
       chords += weight * chord;
@@ -63,10 +63,12 @@ vpWindowMoments vpWindowSums::summedUp(const std::vector<std::uint64_t> &rows) c
   };
   Sums u, v;
   for (size_t x = 0; x < m_columns.size(); ++x) {
-    u.add(1.0 * m_columns[x] * m_across.weights[x], m_across.first + static_cast<int>(x) - m_across.middle);
+    u.add(1.0 * m_columns[x] * m_across.weights[x],
+          m_across.first + static_cast<int>(x) * m_across.step - m_across.middle);
   }
   for (size_t y = 0; y < rows.size(); ++y) {
-    v.add(1.0 * rows[y] * m_down.weights[y], m_down.first + static_cast<int>(y) - m_down.middle);
+    v.add(1.0 * rows[y] * m_down.weights[y],
+          m_down.first + static_cast<int>(y) * m_down.step - m_down.middle);
   }
   vpWindowMoments moments;
   if (u.zeroth > 0 && v.zeroth > 0) {

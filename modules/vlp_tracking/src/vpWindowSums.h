@@ -18,17 +18,26 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! A window's extent along one axis, clipped to the picture, under the kernel 1 - (2 x / length)^2 about its
-//! middle. A target fills the middle of its window; towards the borders there is more and more background.
+/*!
+  A window's extent along one axis, clipped to the picture, under the kernel 1 - (2 x / length)^2 about its
+  middle. A target fills the middle of its window; towards the borders there is more and more background. Of a
+  large window one pixel of `step` is looked at: what is left tells the middle as well as that of a small one.
+*/
 struct vpKernelAxis {
+  int step = 1;             // pixels
   int first = 0;            // pixel
-  std::vector<int> weights; // of the pixels from the first on, in 255ths
+  std::vector<int> weights; // of the pixels first, first + step, ..., in 255ths
   double middle = 0;        // of the whole window, pixel
   double sum = 0;           // of the weights
   double visible = 0;       // share of the kernel that lies inside the picture
   double targetMean = 0;    // px from the middle: mean under the kernel of the part inside of a disc there
 
   void set(double centre, double length, double targetLength, unsigned int pixels);
+  static int stepOf(double length)
+  {
+    static const double enough = 50; // pixels across
+    return std::max(1, static_cast<int>(length / enough));
+  }
 };
 
 //! Back projection of a model onto a window, summed up under the kernel.
@@ -90,13 +99,13 @@ vpBinShares vpWindowSums::histogram(const vpImage<Pixel> &I, const Bins &binOf, 
 {
   place(I, window, 1);
   Lanes lanes{};
-  const size_t width = m_across.weights.size();
+  const size_t width = m_across.weights.size(), step = static_cast<size_t>(m_across.step);
   const int *across = m_across.weights.data();
   for (size_t y = 0; y < m_down.weights.size(); ++y) {
-    const Pixel *row = I[m_down.first + static_cast<int>(y)] + m_across.first;
+    const Pixel *row = I[m_down.first + static_cast<int>(y) * m_down.step] + m_across.first;
     const int down = m_down.weights[y];
     for (size_t x = 0; x < width; ++x) {
-      lanes[x & 3][binOf(row[x])] += static_cast<unsigned int>(across[x] * down);
+      lanes[x & 3][binOf(row[x * step])] += static_cast<unsigned int>(across[x] * down);
     }
   }
   return shares(lanes);
@@ -116,14 +125,15 @@ vpBinShares vpWindowSums::histogramAround(const vpImage<Pixel> &I, const Bins &b
   const int innerTop = clipped(inner.getTop(), I.getHeight());
   const int innerBottom = clipped(inner.getBottom() + 1, I.getHeight());
   const int bottom = clipped(outer.getBottom() + 1, I.getHeight());
+  const int across = vpKernelAxis::stepOf(outer.getWidth()), down = vpKernelAxis::stepOf(outer.getHeight());
   Lanes lanes{};
-  for (int y = clipped(outer.getTop(), I.getHeight()); y < bottom; ++y) {
+  for (int y = clipped(outer.getTop(), I.getHeight()); y < bottom; y += down) {
     const Pixel *row = I[y];
     const bool beside = y >= innerTop && y < innerBottom;
-    for (int x = left; x < (beside ? innerLeft : right); ++x) {
+    for (int x = left; x < (beside ? innerLeft : right); x += across) {
       ++lanes[x & 3][binOf(row[x])];
     }
-    for (int x = beside ? innerRight : right; x < right; ++x) {
+    for (int x = beside ? innerRight : right; x < right; x += across) {
       ++lanes[x & 3][binOf(row[x])];
     }
   }
@@ -136,17 +146,17 @@ vpWindowMoments vpWindowSums::moments(const vpImage<Pixel> &I, const Bins &binOf
                                       double share)
 {
   place(I, window, share);
-  const size_t width = m_across.weights.size();
+  const size_t width = m_across.weights.size(), step = static_cast<size_t>(m_across.step);
   m_columns.assign(width, 0);
   m_rows.assign(m_down.weights.size(), 0);
   const int *across = m_across.weights.data();
   std::uint32_t *columns = m_columns.data();
   for (size_t y = 0; y < m_rows.size(); ++y) {
-    const Pixel *row = I[m_down.first + static_cast<int>(y)] + m_across.first;
+    const Pixel *row = I[m_down.first + static_cast<int>(y) * m_down.step] + m_across.first;
     const unsigned int down = static_cast<unsigned int>(m_down.weights[y]);
     std::uint64_t sum = 0;
     for (size_t x = 0; x < width; ++x) {
-      const unsigned int weight = static_cast<unsigned int>(weights[binOf(row[x])]);
+      const unsigned int weight = static_cast<unsigned int>(weights[binOf(row[x * step])]);
       sum += weight * static_cast<unsigned int>(across[x]);
       columns[x] += weight * down;
     }

@@ -110,6 +110,8 @@ struct VISP_EXPORT vpLampObservation {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // px^2, of point
   double time = 0;      // s, on the frame's clock: middle of the exposure of the line through point
   bool cut = false;     // the picture's border cuts the lamp
+  double blur = 0;      // px, standard deviation of the spread of its edge; 0: it has none
+  double noise = 0;     // grey levels, of pixels about its edge, standard deviation
   double saturated = 0; // share of its lit pixels at the end of the grey scale
   vpStripeFeatures features;
   std::vector<vpLedIdCandidate> candidates; // the likeliest first

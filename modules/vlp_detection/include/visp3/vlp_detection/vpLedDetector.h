@@ -57,6 +57,22 @@ public:
   */
   bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows);
 
+  /*!
+    Looks again at a lamp that was seen in the frame before, in a fraction of the time: fits its outline from
+    where it is expected and compares its stripes with what is known of them. \param lamp As it was, `outline`
+    where it is expected now, `features` all that is known of it; as it is, if it is found. \return False
+    where it is not there, or in any respect not as before, or was not seen well enough: detect() tells more.
+  */
+  bool glance(const vpImage<unsigned char> &I, vpLampObservation &lamp);
+
+  /*!
+    Whether a window shows any light but that of known lamps: three samples in a row that are brighter than
+    the window's median by 8 grey levels and by six standard deviations of the noise. \param known Boxes that
+    are left out, px. \param noise Grey levels.
+  */
+  static bool showsMore(const vpImage<unsigned char> &I, const vpRect &window,
+                        const std::vector<vpRect> &known, double noise);
+
   //! \throw vpException (dimensionError) where \e I has not the size that the rig states.
   void check(const vpImage<unsigned char> &I) const;
 
@@ -70,6 +86,7 @@ private:
   bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
   bool joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
   vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi);
+  void place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const;
 
   vpVlpRig m_rig;
   vpLineTiming m_timing;

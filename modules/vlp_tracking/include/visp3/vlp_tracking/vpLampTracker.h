@@ -47,6 +47,7 @@ public:
   double margin = 0.7;      // of a lamp's extent, by which it is looked for beyond its window on each side
   double searchShare = 0.2; // of the picture that is searched for new lamps in each frame
   size_t needed = 2;        // lamps in sight with an id, below which all of it is
+  unsigned int sure = 5;    // frames that agree on a lamp, after which a glance does to find it again
 
   vpLampTracker(const vpVlpRig &rig, const vpLampMap &map);
   ~vpLampTracker();
@@ -77,7 +78,11 @@ private:
 
   std::vector<vpRect> windows(const vpVlpFrame &frame, const std::vector<vpRect> &expected);
   vpRect strip();
+  void glance(const vpImage<unsigned char> &I);
+  void search(const vpImage<unsigned char> &I);
   void assign();
+  void followGlanced(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
+  void setRight(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
   void follow(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
   std::unique_ptr<vpTargetTracker> targetAt(const vpImage<unsigned char> &I, const vpRect &box) const;
   void bear(vpLampObservation &seen, const vpVlpFrame &frame);

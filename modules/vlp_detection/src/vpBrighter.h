@@ -1,0 +1,42 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpBrighter_h
+#define vpBrighter_h
+
+#include <cstdint>
+
+#include <opencv2/core/hal/intrin.hpp>
+#include <visp3/vlp_core/vpVlpNamespace.h>
+
+BEGIN_VISP_NAMESPACE
+
+//! Samples of a line that are brighter than a threshold, a block at a time.
+namespace vpBrighter
+{
+constexpr int block = 64; // samples
+
+//! Bit i is set where sample i of a block is brighter than \e grey.
+inline std::uint64_t mask(const unsigned char *row, int samples, unsigned char grey)
+{
+  std::uint64_t bits = 0;
+  if (samples < block) {
+    for (int i = 0; i < samples; ++i) {
+      bits |= static_cast<std::uint64_t>(row[i] > grey) << i;
+    }
+    return bits;
+  }
+  const cv::v_uint8x16 threshold = cv::v_setall_u8(grey);
+  static constexpr int width = cv::v_uint8x16::nlanes;
+  for (int i = 0; i < block; i += width) {
+    const auto part = static_cast<std::uint64_t>(cv::v_signmask(cv::v_load(row + i) > threshold));
+    bits |= part << i;
+  }
+  return bits;
+}
+} // namespace vpBrighter
+
+END_VISP_NAMESPACE
+
+#endif

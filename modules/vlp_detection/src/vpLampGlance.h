@@ -1,0 +1,55 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLampGlance_h
+#define vpLampGlance_h
+
+#include <vector>
+
+#include <visp3/vlp_core/vpLampObservation.h>
+#include <visp3/vlp_core/vpRollingShutter.h>
+#include <visp3/vlp_detection/vpLedRoiDetector.h>
+#include <visp3/vlp_detection/vpOutlineFitter.h>
+
+#include "vpEdgeFit.h"
+#include "vpStripeCheck.h"
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  A lamp that was wholly understood, looked at again: its outline is fitted from where it is expected, and its
+  stripes are compared with those it had. What is not as before in any respect is not seen at all, and is for
+  vpLedDetector to look at with care.
+*/
+class vpLampGlance
+{
+public:
+  vpOutlineFit fit; // of the latest lamp
+
+  //! Whether a lamp was seen well enough for a glance to find it again.
+  static bool suits(const vpLampObservation &before);
+
+  /*!
+    \param before Its outline (samples and lines of \e picture) is where the lamp is expected. \return Whether
+    it is there and the same: then \e fit says where, and `area` how many pixels of it are lit.
+  */
+  bool find(const vpLinePicture &picture, const vpLineTiming &timing, const vpLampObservation &before,
+            double shapeSigma);
+  double area() const { return m_area; }
+
+private:
+  bool findOutline(const vpLinePicture &picture, const vpLineTiming &timing, const vpLampObservation &before,
+                   double shapeSigma);
+  void readProfile(const vpLinePicture &picture, const vpLineTiming &timing);
+  bool sameStripes(const vpStripeFeatures &before);
+
+  vpStripeProfile m_profile;     // kept for its memory
+  std::vector<double> m_lengths; // px, of its lines inside the outline
+  vpStripeCheck m_check;
+  double m_area = 0; // px
+};
+
+END_VISP_NAMESPACE
+
+#endif
