@@ -38,6 +38,7 @@ fi
 mkdir -p "$(dirname "$out")"
 work="$(mktemp -d "$out.XXXXXX")" # beside it, so that the end is one rename
 trap 'rm -rf "$work"' EXIT
+trap 'exit 143' INT TERM HUP # only after apt has come to its end, which would go on writing
 root="$work/root"
 libraries="$root/usr/lib/aarch64-linux-gnu"
 
