@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs those packages of apt-packages.txt that are missing. Says nothing where none is.
+#   bash cmake/install-dependencies.sh [LIST]   another list of the same form
 set -euo pipefail
 export LC_ALL=C
 
-list="$(dirname "${BASH_SOURCE[0]}")/apt-packages.txt"
+list="${1:-$(dirname "${BASH_SOURCE[0]}")/apt-packages.txt}"
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "visp_vlp: no apt on this system; install what $list names, then: cmake --preset release" >&2
   exit 1

@@ -17,14 +17,18 @@
 
 #include "common/vpTemporaryFolder.h"
 
-//! A program of this project (build/bin), run as a user runs it: without a terminal, its output kept.
+/*!
+  A program of this project (build/bin), run as a user runs it: without a terminal, its output kept. VLP_EMULATOR: the words
+  before it where it is of another processor; else nothing.
+*/
 class vpProcess
 {
 public:
   explicit vpProcess(const std::string &program, const std::vector<std::string> &arguments = {},
                      const std::string &stdoutFile = "")
   {
-    std::vector<std::string> words = {std::string(VLP_BIN_DIR) + "/" + program};
+    std::vector<std::string> words = {VLP_EMULATOR};
+    words.push_back(std::string(VLP_BIN_DIR) + "/" + program);
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char *> pointers;
     for (std::string &word : words) {
@@ -45,7 +49,7 @@ public:
     sigaddset(&signals, SIGINT);
     posix_spawnattr_setsigdefault(&attributes, &signals);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-    const int error = posix_spawn(&m_id, words[0].c_str(), &actions, &attributes, pointers.data(), environ);
+    const int error = posix_spawnp(&m_id, words[0].c_str(), &actions, &attributes, pointers.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (error != 0) {
