@@ -151,6 +151,16 @@ TEST_F(Glance, LeavesPartsOfALampToTheDetector)
   EXPECT_FALSE(finds(lamp(120, 239 - radius)));
 }
 
+TEST_F(Glance, LampsThatLeaveThePictureAreNotFollowedOutOfIt)
+{
+  for (double v = 239 - 1.3 * radius; v < 250; v += 1) {
+    const vpImage<unsigned char> I = picture({lamp(120, v)}).render();
+    for (double expected = v - 15; expected < v; expected += 5) {
+      EXPECT_FALSE(finds(I, {120, expected}) && v > 239 - radius - 4) << v << " expected at " << expected;
+    }
+  }
+}
+
 TEST_F(Glance, TakesOnlyWhatWasUnderstood)
 {
   const vpLampObservation understood = before;

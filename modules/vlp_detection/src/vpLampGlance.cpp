@@ -20,6 +20,14 @@ int lightOf(const unsigned char *pixel, int pixels)
   }
   return sum;
 }
+//! Whether all of it lies in the picture, and what is beside it.
+bool whole(const vpLampOutline &outline, double blur, const vpLinePicture &picture)
+{
+  const Eigen::Vector4d box = outline.box();
+  const double margin = 3 * blur + 4; // px
+  return box(0) > margin && box(1) > margin && box(2) < picture.grey.cols - 1 - margin &&
+         box(3) < picture.grey.rows - 1 - margin;
+}
 } // namespace
 
 bool vpLampGlance::suits(const vpLampObservation &before)
@@ -36,17 +44,8 @@ bool vpLampGlance::suits(const vpLampObservation &before)
 bool vpLampGlance::find(const vpLinePicture &picture, const vpLineTiming &timing,
                         const vpLampObservation &before, double shapeSigma)
 {
-  const Eigen::Vector4d box = before.outline.box();
-  const double margin = 3 * before.blur + 4;
-  if (!(box(0) > margin && box(1) > margin && box(2) < picture.grey.cols - 1 - margin &&
-        box(3) < picture.grey.rows - 1 - margin)) {
-    return false;
-  }
-  if (!findOutline(picture, timing, before, shapeSigma)) {
-    return false;
-  }
-  readProfile(picture, timing);
-  return sameStripes(before.features);
+  return whole(before.outline, before.blur, picture) && findOutline(picture, timing, before, shapeSigma) &&
+         whole(fit.outline, fit.blur, picture) && sameStripes(picture, timing, before.features);
 }
 
 bool vpLampGlance::findOutline(const vpLinePicture &picture, const vpLineTiming &timing,
@@ -114,10 +113,12 @@ void vpLampGlance::readProfile(const vpLinePicture &picture, const vpLineTiming 
   }
 }
 
-bool vpLampGlance::sameStripes(const vpStripeFeatures &before)
+bool vpLampGlance::sameStripes(const vpLinePicture &picture, const vpLineTiming &timing,
+                               const vpStripeFeatures &before)
 {
   static const double gate = 4;               // standard deviations
   static const double much = 0.015, more = 2; // misfit; times that of before
+  readProfile(picture, timing);
   return m_check.compare(m_profile, before) && m_check.amplitude > 0 &&
          m_check.misfit < std::max(much, more * before.misfit) &&
          std::abs(m_check.change) < gate * std::hypot(m_check.changeSigma, before.frequencySigma);

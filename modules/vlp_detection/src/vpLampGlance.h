@@ -42,7 +42,7 @@ private:
   bool findOutline(const vpLinePicture &picture, const vpLineTiming &timing, const vpLampObservation &before,
                    double shapeSigma);
   void readProfile(const vpLinePicture &picture, const vpLineTiming &timing);
-  bool sameStripes(const vpStripeFeatures &before);
+  bool sameStripes(const vpLinePicture &picture, const vpLineTiming &timing, const vpStripeFeatures &before);
 
   vpStripeProfile m_profile;     // kept for its memory
   std::vector<double> m_lengths; // px, of its lines inside the outline
