@@ -18,8 +18,8 @@
 #include "common/vpTemporaryFolder.h"
 
 /*!
-  A program of this project (build/bin), run as a user runs it: without a terminal, its output kept. VLP_EMULATOR: the words
-  before it where it is of another processor; else nothing.
+  A program of this project (build/bin), run as a user runs it: without a terminal, its output kept.
+  VLP_EMULATOR: the words before it where it is of another processor; else nothing.
 */
 class vpProcess
 {

@@ -20,6 +20,10 @@ BEGIN_VISP_NAMESPACE
   over the window in which outline, stripes and LED-ID are looked for; what the stripes of its frames say
   together tells which lamp it is.
 
+  A lamp that `sure` frames agree on is looked for by a glance (vpLedDetector::glance()), which takes what it
+  finds for that lamp only where it is as before in every respect; what a glance does not find is looked at
+  with care, and so are windows that show any other light.
+
   New lamps are born of a search that covers a strip of each frame, so that its cost is bounded; of the whole
   frame only where fewer lamps than `needed` are in sight. One that is not seen for `patience` dies, and so
   does one that left the picture. Stripes that contradict what a lamp has shown before are another lamp's: it
