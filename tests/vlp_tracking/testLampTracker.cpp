@@ -261,6 +261,27 @@ TEST(LampTracker, LampsThatCrossKeepTheirIds)
   }
 }
 
+TEST(LampTracker, LampsThatBlinkAlikeAreNeverTheSameOne)
+{
+  // The one that goes dark leaves its target with nothing to follow but its neighbour.
+  const Scene scene;
+  for (const double apart : {62.0, 80.0, 100.0}) { // px
+    vpLampTracker tracker = scene.tracker();
+    const Lamp stays = {200.3 + apart, 150.2, 2000}, leaves = {200.3, 150.2, 2000}, other = {80, 60, 2600};
+    unsigned int number = 0;
+    for (int k = 0; k < 30; ++k) {
+      const bool dark = k >= 12 && k < 22;
+      const std::vector<vpLampObservation> all = tracker.track(
+          scene.frame(k, dark ? std::vector<Lamp>{stays, other} : std::vector<Lamp>{stays, other, leaves}));
+      EXPECT_EQ(all.size(), dark ? 2u : 3u) << "frame " << k << ", " << apart;
+      const vpLampObservation *seen = scene.seen(all, stays);
+      ASSERT_NE(seen, nullptr) << "frame " << k << ", " << apart;
+      number = number == 0 ? seen->track : number;
+      EXPECT_EQ(seen->track, number) << "frame " << k << ", " << apart;
+    }
+  }
+}
+
 TEST(LampTracker, LampThatEntersIsBornWithinTheFramesOfOneSearch)
 {
   const Scene scene;

@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <tuple>
 #include <utility>
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
+
+#include "vpLampTrack.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -56,64 +57,6 @@ bool blinks(const vpLampObservation &seen)
          seen.outline.shape != vpLampOutline::Shape::region;
 }
 } // namespace
-
-//! A lamp that is followed.
-struct vpLampTracker::Track {
-  unsigned int number = 0;
-  std::unique_ptr<vpTargetTracker> target;
-  vpLedIdEvidence evidence;
-  vpRect window;       // px, where it is expected in the frame at hand
-  double seenLast = 0; // s
-  bool taken = false;  // by an observation of the frame at hand
-  vpRect place;        // px, where it was seen last
-  bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
-  std::vector<unsigned char> look;        // pixels of the place, line by line
-  std::optional<vpLampObservation> known; // as it was seen last, where a glance may find it again
-
-  void learn(const vpLampObservation &seen, unsigned int sure);
-  void remember(const vpImage<unsigned char> &I);
-  bool shown() const { return !look.empty(); }
-  bool showsAgain(const vpImage<unsigned char> &I) const;
-};
-
-//! What the picture shows at its place.
-void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
-{
-  look.clear();
-  const auto left = static_cast<unsigned int>(place.getLeft()),
-             top = static_cast<unsigned int>(place.getTop()),
-             width = static_cast<unsigned int>(place.getWidth()),
-             height = static_cast<unsigned int>(place.getHeight());
-  for (unsigned int v = top; v < top + height; ++v) {
-    look.insert(look.end(), I[v] + left, I[v] + left + width);
-  }
-}
-
-//! A lamp that is recognised beyond doubt may be found by a glance in the next frame.
-void vpLampTracker::Track::learn(const vpLampObservation &seen, unsigned int sure)
-{
-  const bool decided = seen.candidates.size() <= 1 && seen.confidence > 0.99;
-  if (decided && evidence.frames() >= sure) {
-    known = seen;
-  } else {
-    known.reset();
-  }
-}
-
-//! Whether another one shows the same, pixel for pixel.
-bool vpLampTracker::Track::showsAgain(const vpImage<unsigned char> &I) const
-{
-  const auto left = static_cast<unsigned int>(place.getLeft()),
-             top = static_cast<unsigned int>(place.getTop()),
-             width = static_cast<unsigned int>(place.getWidth());
-  for (size_t line = 0; line * width < look.size(); ++line) {
-    const auto first = look.begin() + static_cast<std::ptrdiff_t>(line * width);
-    if (!std::equal(first, first + width, I[top + static_cast<unsigned int>(line)] + left)) {
-      return false;
-    }
-  }
-  return true;
-}
 
 vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detector(rig, map), m_rig(rig) {}
 vpLampTracker::~vpLampTracker() = default;
@@ -174,7 +117,8 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   }
   for (size_t i = 0; i < m_observations.size(); ++i) {
     if (m_trackOf[i] >= 0) {
-      m_tracks[static_cast<size_t>(m_trackOf[i])].learn(m_observations[i], sure);
+      m_tracks[static_cast<size_t>(m_trackOf[i])].learn(m_observations[i], sure,
+                                                        detector.recognizer.minConfidence);
     }
   }
   std::stable_sort(m_observations.begin(), m_observations.end(),
@@ -208,6 +152,29 @@ void vpLampTracker::glance(const vpImage<unsigned char> &I)
       track.taken = true;
       m_observations.push_back(std::move(lamp));
       m_trackOf.push_back(static_cast<int>(t));
+    }
+  }
+  // Of lamps that blink alike, the target of one that is hidden may be another one: it is that which came
+  // from nearer by.
+  static const double same = 0.3;
+  auto way = [this](size_t i) { // px, since the frame before
+    const vpLampOutline &outline = m_observations[i].outline;
+    return vpImagePoint::distance(m_tracks[static_cast<size_t>(m_trackOf[i])].place.getCenter(),
+                                  {outline.centre.y(), outline.centre.x()});
+  };
+  std::vector<bool> another(m_observations.size(), false);
+  for (size_t i = 0; i < m_observations.size(); ++i) {
+    for (size_t k = i + 1; k < m_observations.size(); ++k) {
+      if (overlap(boxOf(m_observations[i].outline), boxOf(m_observations[k].outline)) > same) {
+        another[way(i) > way(k) ? i : k] = true;
+      }
+    }
+  }
+  for (size_t i = another.size(); i-- > 0;) {
+    if (another[i]) {
+      m_tracks[static_cast<size_t>(m_trackOf[i])].taken = false;
+      m_observations.erase(m_observations.begin() + static_cast<std::ptrdiff_t>(i));
+      m_trackOf.erase(m_trackOf.begin() + static_cast<std::ptrdiff_t>(i));
     }
   }
 }

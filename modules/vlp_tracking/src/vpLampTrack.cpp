@@ -1,0 +1,51 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpLampTrack.h"
+
+#include <algorithm>
+#include <cstddef>
+
+BEGIN_VISP_NAMESPACE
+
+//! What the picture shows at its place.
+void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
+{
+  look.clear();
+  const auto left = static_cast<unsigned int>(place.getLeft()),
+             top = static_cast<unsigned int>(place.getTop()),
+             width = static_cast<unsigned int>(place.getWidth()),
+             height = static_cast<unsigned int>(place.getHeight());
+  for (unsigned int v = top; v < top + height; ++v) {
+    look.insert(look.end(), I[v] + left, I[v] + left + width);
+  }
+}
+
+//! A lamp that is recognised beyond doubt may be found by a glance in the next frame.
+void vpLampTracker::Track::learn(const vpLampObservation &seen, unsigned int sure, double minConfidence)
+{
+  const bool decided = seen.candidates.size() <= 1 && seen.confidence >= minConfidence;
+  if (decided && evidence.frames() >= sure) {
+    known = seen;
+  } else {
+    known.reset();
+  }
+}
+
+//! Whether another one shows the same, pixel for pixel.
+bool vpLampTracker::Track::showsAgain(const vpImage<unsigned char> &I) const
+{
+  const auto left = static_cast<unsigned int>(place.getLeft()),
+             top = static_cast<unsigned int>(place.getTop()),
+             width = static_cast<unsigned int>(place.getWidth());
+  for (size_t line = 0; line * width < look.size(); ++line) {
+    const auto first = look.begin() + static_cast<std::ptrdiff_t>(line * width);
+    if (!std::equal(first, first + width, I[top + static_cast<unsigned int>(line)] + left)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+END_VISP_NAMESPACE

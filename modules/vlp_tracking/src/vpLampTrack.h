@@ -1,0 +1,37 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLampTrack_h
+#define vpLampTrack_h
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <visp3/vlp_tracking/vpLampTracker.h>
+
+BEGIN_VISP_NAMESPACE
+
+//! A lamp that is followed.
+struct vpLampTracker::Track {
+  unsigned int number = 0;
+  std::unique_ptr<vpTargetTracker> target;
+  vpLedIdEvidence evidence;
+  vpRect window;       // px, where it is expected in the frame at hand
+  double seenLast = 0; // s
+  bool taken = false;  // by an observation of the frame at hand
+  vpRect place;        // px, where it was seen last
+  bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
+  std::vector<unsigned char> look;        // pixels of the place, line by line
+  std::optional<vpLampObservation> known; // as it was seen last, where a glance may find it again
+
+  void learn(const vpLampObservation &seen, unsigned int sure, double minConfidence);
+  void remember(const vpImage<unsigned char> &I);
+  bool shown() const { return !look.empty(); }
+  bool showsAgain(const vpImage<unsigned char> &I) const;
+};
+
+END_VISP_NAMESPACE
+
+#endif
