@@ -22,6 +22,7 @@
 namespace
 {
 const double lowest = 500, highest = 7000; // Hz
+const double diameter = 0.175;             // m, of the maps' lamps, all discs
 const double rowTimeSigma = 5e-5;          // as a share of the row time
 
 struct Map {
@@ -38,6 +39,7 @@ vpLampMap lampsOf(int count, bool duties, unsigned int seed)
   while (static_cast<int>(map.lamps.size()) < count) {
     vpLamp lamp;
     lamp.id = std::to_string(map.lamps.size());
+    lamp.size = diameter;
     lamp.modulation.kind = vpModulation::Kind::pwm;
     lamp.modulation.frequency = lowest + (highest - lowest) * uniform(generator);
     if (duties) {
@@ -67,6 +69,7 @@ vpLampMap plannedLamps(size_t count, bool duties)
   }
   vpLampMap map = vpMapOf(planner.spread(stripes.lines, stripes.oscillator, count).identifiers);
   for (vpLamp &lamp : map.lamps) {
+    lamp.size = diameter;
     if (!duties) {
       lamp.modulation.duty.reset();
     }

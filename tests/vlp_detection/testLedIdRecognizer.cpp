@@ -74,6 +74,29 @@ TEST(LedIdRecognizer, NoLampFits)
   EXPECT_FALSE(seen.remark.empty());
 }
 
+TEST(LedIdRecognizer, AWindowIsNoDisc)
+{
+  vpLampMap map{{lamp("disc", 2000), lamp("square", 3000), lamp("unmeasured", 4000)}};
+  map.lamps[0].size = map.lamps[1].size = 0.2;
+  map.lamps[1].shape = vpLamp::Shape::square;
+  auto seen = [&map](double frequency, vpLampOutline::Shape shape, double otherShape, bool cut = false) {
+    vpLampObservation observation = stripes(frequency, 3);
+    observation.outline.shape = shape;
+    observation.outline.otherShape = otherShape;
+    observation.cut = cut;
+    return recognized(map, observation);
+  };
+  const auto ellipse = vpLampOutline::Shape::ellipse, sides = vpLampOutline::Shape::quadrilateral;
+  EXPECT_EQ(seen(2000, ellipse, 0).id, "disc");
+  EXPECT_EQ(seen(2000, sides, 0).id, "");
+  EXPECT_EQ(seen(2000, sides, 0).remark, "fits no lamp of the map of its shape");
+  EXPECT_EQ(seen(3000, sides, 0).id, "square");
+  EXPECT_EQ(seen(3000, ellipse, 0).id, "");
+  EXPECT_EQ(seen(4000, sides, 0).id, "unmeasured");
+  EXPECT_EQ(seen(2000, sides, 0.01).id, "disc") << "small lamps show no corners";
+  EXPECT_EQ(seen(2000, sides, 0, true).id, "disc") << "the border has corners of its own";
+}
+
 TEST(LedIdRecognizer, TwoLampsFit)
 {
   const vpLampMap map{{lamp("A", 2000), lamp("B", 2010)}};

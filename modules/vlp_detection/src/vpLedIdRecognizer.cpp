@@ -90,6 +90,7 @@ struct vpLedIdRecognizer::Sight {
   bool readable = false;
   double unknown = 0; // prior probability times density of a lamp that the map does not know
   std::vector<Candidate> candidates;
+  bool misshapen = false; // not the shape of a lamp that might have blinked so
 
   double density(const Candidate &candidate, double rowTimeError) const
   {
@@ -154,6 +155,20 @@ vpLedIdRecognizer::vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutte
   });
 }
 
+//! Whether any of its lamps may have the outline seen.
+bool vpLedIdRecognizer::mayLookLike(const vpIdentifier &identifier, const vpLampObservation &seen) const
+{
+  if (seen.cut || !(seen.outline.otherShape < leastShape)) {
+    return true;
+  }
+  const vpLamp::Shape shape =
+      seen.outline.shape == vpLampOutline::Shape::quadrilateral ? vpLamp::Shape::square : vpLamp::Shape::disk;
+  return std::any_of(identifier.lamps.begin(), identifier.lamps.end(), [&](size_t index) {
+    const vpLamp &lamp = m_map.lamps[index];
+    return lamp.shape == shape || std::isnan(lamp.size);
+  });
+}
+
 //! Compares duty, phase difference or word of an identifier with what was seen.
 void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp, size_t index) const
 {
@@ -161,6 +176,10 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   const vpIdentifier &identifier = m_identifiers[index];
   const vpModulation &sent = identifier.modulation;
   if (!sameKind(seen.signal, sent.kind)) {
+    return;
+  }
+  if (!mayLookLike(identifier, lamp)) {
+    sight.misshapen = true;
     return;
   }
   Candidate candidate;
@@ -320,6 +339,7 @@ void vpLedIdRecognizer::decide(vpLampObservation &lamp, const Sight &sight) cons
   }
   if (lamp.candidates.empty()) {
     lamp.remark = lamp.features.signal == Signal::coded ? "coded, a word that the map does not have"
+                  : sight.misshapen                     ? "fits no lamp of the map of its shape"
                                                         : "fits no lamp of the map";
     return;
   }

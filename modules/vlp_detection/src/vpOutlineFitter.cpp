@@ -70,6 +70,7 @@ vpOutlineFit likelier(const vpEdgeFit<vpEllipseModel> &ellipse, const vpEdgeFit<
   const vpOutlineFit other = gain > 0 ? ellipse.result() : sides.result();
   const double doubt = 1 / (1 + std::exp(0.5 * std::abs(gain)));
   const Eigen::Vector2d apart = other.outline.centre - best.outline.centre;
+  best.outline.otherShape = doubt;
   best.outline.centreCovariance += doubt * (other.outline.centreCovariance + apart * apart.transpose());
   return best;
 }
@@ -162,18 +163,24 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     addElongationDoubt(best.outline, roi, ellipse.prior());
   }
   bool even = isEllipse && ellipse.evenness() > evenEdge;
-  if (vpChordShape::rectangleMisfit(ends) <= 3 * ellipseMisfit) {
+  const double sidesMisfit = vpChordShape::rectangleMisfit(ends);
+  if (sidesMisfit <= 3 * ellipseMisfit) {
     vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions,
                                           vpQuadrilateralModel::from(ends));
     if (sides.run(roi.box, shapeSigma, maxIterations) && sides.evenness() > evenEdge &&
         holds(sides.result(), roi)) {
-      best = even ? likelier(ellipse, sides) : sides.result();
+      if (even) {
+        best = likelier(ellipse, sides);
+      } else {
+        best = sides.result();
+        best.outline.otherShape = 0; // no ellipse fits at all
+      }
       even = true;
     }
   }
   if (!even && (roi.cutAcross || roi.cutAlong)) {
     best.outline = boxOf(roi); // what is seen of its light says nothing of its middle
-  } else if (!even && (isEllipse || ellipseMisfit < softMisfit * start.radius())) {
+  } else if (!even && (isEllipse || ellipseMisfit < std::min(softMisfit * start.radius(), 2 * sidesMisfit))) {
     if (!isEllipse) {
       best.outline = start.outline(Eigen::MatrixXd::Zero(2, 2));
       best.blur = softMisfit * start.radius();

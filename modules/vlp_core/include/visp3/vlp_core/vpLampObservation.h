@@ -34,7 +34,8 @@ struct VISP_EXPORT vpLampOutline {
                                           Eigen::Vector2d::Zero(),
                                           Eigen::Vector2d::Zero()}}; // quadrilateral and region
   Eigen::Matrix2d centreCovariance = Eigen::Matrix2d::Zero();        // px^2
-  double residual = 0; // px, root mean square of edge points about the outline
+  double residual = 0;     // px, root mean square of edge points about the outline
+  double otherShape = 0.5; // probability of being the other of ellipse and quadrilateral; 0.5: nobody looked
 
   //! Mean diameter of an ellipse, mean side of a quadrilateral or region, pixels.
   double diameter() const;

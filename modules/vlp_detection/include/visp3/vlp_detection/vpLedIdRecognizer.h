@@ -40,6 +40,9 @@ struct VISP_EXPORT vpRowTimeError {
   Where duty and frequency are known together only (vpStripeFeatures::alongDuty), each identifier is compared
   with what the frequency would be with its duty, and one that states none within `spreadGate` of all of them.
 
+  Of a lamp whose shape the map states by its size, the outline has that shape: a window that crossbars divide
+  evenly has the stripes of a lamp, and is no disc.
+
   One that has at least `minConfidence` and a single lamp gives the id. What several lamps of one identifier
   leave open, or several candidates, is for geometry to decide: `candidates` hands them on.
 */
@@ -50,6 +53,7 @@ public:
   double boundGate = 2.1;          // times the bound, on what the estimate is off by
   double spreadGate = 1.2;         // standard deviations, on what an unstated duty leaves open of it
   double shapeGate = 4;            // standard deviations, on duty and phase difference
+  double leastShape = 1e-3;        // probability of its shape below which a whole outline is another lamp's
   double minConfidence = 0.99;     // probability below which no id is given
   double maxFrequencyDoubt = 0.03; // share of the frequency: less certain stripes are recognised as nothing
   double maxSpread = 4;            // frequencySigma over frequencyBound, above which there is no id
@@ -74,6 +78,7 @@ private:
 
   void addCandidate(Sight &sight, const vpLampObservation &lamp, size_t identifier) const;
   Sight sightOf(const vpLampObservation &lamp) const;
+  bool mayLookLike(const vpIdentifier &identifier, const vpLampObservation &lamp) const;
   double reachOf(double frequencySigma, double frequencyBound) const;
   std::vector<double> rowTimeErrors(const std::vector<Sight> &sights) const;
   void decide(vpLampObservation &lamp, const Sight &sight) const;
