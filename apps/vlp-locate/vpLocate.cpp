@@ -37,21 +37,22 @@ public:
       : m_options(options), m_rig(vpVlpRig::load(options.rigFile)), m_map(vpLampMap::load(options.lampsFile)),
         m_localizer(options.localizer(m_rig, m_map)),
         m_odometry(options.odometry.empty() ? std::vector<vpOdometry>() : vpReadOdometry(options.odometry)),
-        m_source(options.openFrames()), m_outputs(options, m_map, [this] { return windowClosed(); })
+        m_source(options.openFrames(m_rig)), m_outputs(options, m_map, [this] { return windowClosed(); })
   {
   }
 
   vpExitCode run()
   {
-    vpInterrupt::install();
     remarkOnFrames();
     // Where the poses appear on the same terminal, they are the progress.
     vpProgressBar progress(m_source->size(), !(m_options.posesToStdout() && isatty(STDOUT_FILENO) == 1));
     bool ended = false;
     for (vpLocatedFrame located; !vpInterrupt::requested() && !clicked(); ++located.index) {
+
       try {
-        if (!m_source->next(located.frame)) {
-          ended = true;
+        const bool enough = m_options.frames > 0 && located.index == m_options.frames;
+        if (enough || !m_source->next(located.frame)) {
+          ended = !vpInterrupt::requested(); // which ends the wait for a camera's frame as well
           break;
         }
         locate(located);
@@ -143,6 +144,9 @@ private:
                    std::to_string(frames) + (total == 0 ? "" : " of " + std::to_string(total) + " frames"));
     }
     m_summary.log();
+    if (const std::string remark = m_source->remark(); !m_options.camera.uri.empty() && !remark.empty()) {
+      spdlog::warn(vpOneLine(remark)); // what became of the frames is known by now
+    }
     if (const size_t left = m_outputs.posesLeftOut(); left > 0) {
       spdlog::info("{} not among the poses, whose times rise from row to row (--fixes has every frame)",
                    left == 1 ? "1 position is" : std::to_string(left) + " positions are");
@@ -186,6 +190,10 @@ private:
 
 vpExitCode vpLocate(const vpLocateOptions &asked)
 {
+  vpInterrupt::install();
+  if (asked.listCameras) {
+    return vpCameraOptions::list();
+  }
   vpLocateOptions options = asked;
   if (options.display) {
     const std::string missing = vpVlpWindow::missing();

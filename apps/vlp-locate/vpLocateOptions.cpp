@@ -31,6 +31,8 @@ Examples:
   vlp-locate --run recorded --odometry recorded/odometry.csv --poses poses.tum
   vlp-locate --rig rig.yaml --lamps lamps.yaml --images 'frames/%04d.png' --fixes fixes.csv --overlay look
   vlp-locate --rig rig.yaml --lamps lamps.yaml --image a.png b.jpg > poses.tum
+  vlp-locate --list-cameras
+  vlp-locate --rig rig.yaml --lamps lamps.yaml --camera aravis:// --rate 12 --display
 
 Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
   poses    TUM: timestamp tx ty tz qx qy qz qw; a frame without a position, or with two that explain it
@@ -50,6 +52,8 @@ Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
            in which lamps were looked for, if not in all of the picture. Beside it state, time, pose, and
            the map from above: its lamps, the robot with the ellipse of 3 sigma, its trail, grid in metres.
 Pictures without times (--images, --image) get their index, 0 1 2 ..., as their time.
+A camera's frames have the time at which the exposure of their first line began, on the computer's steady clock.
+One that goes away is told once, and waited for; frames that were dropped, broken or overtaken are counted.
 Frames are taken in the order in which they are listed. One whose time is not after that of the frame before
 has state none, unless it is more than a second earlier: then the clock was set back, and all begins anew.
 With --no-track it is located all the same. In poses the times rise: a pose with an earlier one has no row.
@@ -102,6 +106,11 @@ bool vpLocateOptions::parse(int argc, char **argv)
   vpAddName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
   app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
   vpAddName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
+  camera.add(app);
+  app.add_option("--frames", frames, "end after as many frames; default: where they end, or at Ctrl-C")
+      ->type_name("N");
+  app.add_flag("--list-cameras", listCameras,
+               "print the cameras that are found, with what they can do, and end");
   vpAddChoice(
       app, "--attitude", attitude, {"mount", "free"},
       "mount (default): roll and pitch from the rig; free: all six estimated, from three lamps or more");
@@ -123,6 +132,9 @@ bool vpLocateOptions::parse(int argc, char **argv)
     return false;
   }
 
+  if (listCameras) {
+    return true;
+  }
   noTrack = noTrack || !files.empty() || solver == "two";
   freeAttitude = attitude == "free";
   twoLamps = solver == "two";
@@ -136,12 +148,13 @@ bool vpLocateOptions::parse(int argc, char **argv)
 
 void vpLocateOptions::check() const
 {
-  const int sources =
-      (run.empty() ? 0 : 1) + (pattern.empty() ? 0 : 1) + (files.empty() ? 0 : 1) + (video.empty() ? 0 : 1);
+  const int sources = (run.empty() ? 0 : 1) + (pattern.empty() ? 0 : 1) + (files.empty() ? 0 : 1) +
+                      (video.empty() ? 0 : 1) + (camera.uri.empty() ? 0 : 1);
   if (sources != 1) {
     fail("frames: " + std::string(sources == 0 ? "none" : "more than one source") +
-         ", expected one of --run, --images, --image and --video (--help explains the options)");
+         ", expected one of --run, --images, --image, --video and --camera (--help explains the options)");
   }
+  camera.check();
   if (rigFile.empty()) {
     fail("--rig: nothing, expected the file of the camera on the robot");
   }
@@ -164,8 +177,11 @@ void vpLocateOptions::check() const
   refuseClashes(inputs, {{"--poses", poses}, {"--fixes", fixes}, {"--seen", seen}});
 }
 
-std::unique_ptr<vpFrameSource> vpLocateOptions::openFrames() const
+std::unique_ptr<vpFrameSource> vpLocateOptions::openFrames(const vpVlpRig &rig) const
 {
+  if (!camera.uri.empty()) {
+    return camera.open(rig);
+  }
   if (!run.empty()) {
     return std::make_unique<vpPictureSequence>(vpPictureSequence::fromRun(run));
   }
@@ -180,7 +196,7 @@ std::unique_ptr<vpFrameSource> vpLocateOptions::openFrames() const
 
 std::string vpLocateOptions::framesName() const
 {
-  for (const std::string &name : {run, pattern, video}) {
+  for (const std::string &name : {run, pattern, video, camera.uri}) {
     if (!name.empty()) {
       return name;
     }

@@ -14,18 +14,23 @@
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 #include <visp3/vlp_sensor/vpFrameSource.h>
 
+#include "common/vpCameraOptions.h"
+
 BEGIN_VISP_NAMESPACE
 
 //! What the command line of vlp-locate says; a name that is empty was not given.
 struct vpLocateOptions {
   std::string rigFile;
   std::string lampsFile;
-  std::string run;                // a folder; one of these four is given
+  std::string run;                // a folder; one of these five is given
   std::string pattern;            // of numbered pictures
   std::vector<std::string> files; // pictures
   std::string video;
-  std::string odometry; // of the robot, a file
-  bool noTrack = false; // each frame by itself
+  vpCameraOptions camera;
+  size_t frames = 0;        // to take at most; 0: all there are
+  bool listCameras = false; // and nothing else
+  std::string odometry;     // of the robot, a file
+  bool noTrack = false;     // each frame by itself
   bool freeAttitude = false;
   bool twoLamps = false; // the paper's solver
   std::string poses;     // outputs
@@ -44,7 +49,7 @@ struct vpLocateOptions {
   }
 
   //! \throw vpException where the frames cannot be opened.
-  std::unique_ptr<vpFrameSource> openFrames() const;
+  std::unique_ptr<vpFrameSource> openFrames(const vpVlpRig &rig) const;
 
   //! What the frames were given by, for messages.
   std::string framesName() const;

@@ -1,0 +1,44 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpCameraOptions_h
+#define vpCameraOptions_h
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <visp3/vlp_core/vpVlpRig.h>
+#include <visp3/vlp_sensor/vpFrameSource.h>
+
+#include "common/vpProgram.h"
+
+BEGIN_VISP_NAMESPACE
+
+//! Frames from a camera, as the programs' command lines ask for them: --camera, --exposure, --gain, --rate.
+struct vpCameraOptions {
+  std::string uri;                // empty: no camera was asked for
+  std::optional<double> exposure; // s; as it comes the rig's
+  std::optional<double> gain;     // in the camera's own unit; as it comes what the camera has
+  std::optional<double> rate;     // Hz; likewise
+
+  void add(CLI::App &app);
+
+  //! \throw vpException (badValue) where something is asked of a camera that was not asked for.
+  void check() const;
+
+  /*!
+    Opens it: the sensor's whole picture where the rig states a resize, which is then done here, else a
+    picture of the rig's size. Waiting for a frame ends with vpInterrupt. \throw vpException as
+    vpCameraSource.
+  */
+  std::unique_ptr<vpFrameSource> open(const vpVlpRig &rig) const;
+
+  //! Prints all cameras that are found, with what they can do. \return nothingFound where there is none.
+  static vpExitCode list();
+};
+
+END_VISP_NAMESPACE
+
+#endif
