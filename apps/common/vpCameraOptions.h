@@ -5,6 +5,7 @@
 #ifndef vpCameraOptions_h
 #define vpCameraOptions_h
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,9 +30,9 @@ struct vpCameraOptions {
   void check() const;
 
   /*!
-    Opens it: the sensor's whole picture where the rig states a resize, which is then done here, else a
-    picture of the rig's size. Waiting for a frame ends with vpInterrupt. \throw vpException as
-    vpCameraSource.
+    Opens it, with vpHostTime() as its clock: the sensor's whole picture where the rig states a resize, which
+    is then done here, else a picture of the rig's size. Waiting for a frame ends with vpInterrupt. \throw
+    vpException as vpCameraSource.
   */
   std::unique_ptr<vpFrameSource> open(const vpVlpRig &rig) const;
 

@@ -52,7 +52,7 @@ Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
            in which lamps were looked for, if not in all of the picture. Beside it state, time, pose, and
            the map from above: its lamps, the robot with the ellipse of 3 sigma, its trail, grid in metres.
 Pictures without times (--images, --image) get their index, 0 1 2 ..., as their time.
-A camera's frames have the time at which the exposure of their first line began, on the computer's steady clock.
+A camera's frames have the time at which the exposure of their first line began, on the computer's clock.
 One that goes away is told once, and waited for; frames that were dropped, broken or overtaken are counted.
 Frames are taken in the order in which they are listed. One whose time is not after that of the frame before
 has state none, unless it is more than a second earlier: then the clock was set back, and all begins anew.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpHostTime.h>
 
 #include "vpCameraKinds.h"
 
@@ -23,11 +24,6 @@ const double atOnce = 0.05; // s, that a driver waits at a time
 std::vector<vpCameraKind> kinds()
 {
   return {vpAravisKind(), vpV4l2Kind(), vpUvcKind(), vpMindVisionKind()};
-}
-
-double steadySeconds()
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 void sleepFor(double seconds)
@@ -106,7 +102,7 @@ vpCameraSource::vpCameraSource(const std::string &name, Opener opener, const vpC
 {
   settings.check();
   if (!m_patience.clock) {
-    m_patience.clock = steadySeconds;
+    m_patience.clock = vpHostTime;
   }
   connect();
 }

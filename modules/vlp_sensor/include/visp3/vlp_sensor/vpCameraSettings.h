@@ -54,7 +54,7 @@ struct VISP_EXPORT vpCameraPatience {
   double opening = 8;      // s, until a camera that somebody else held a moment ago lets go of it
   double betweenTries = 1; // s, between two tries to find a lost camera again
 
-  //! Clock of the time stamps, s. Empty: std::chrono::steady_clock.
+  //! Clock of the time stamps, s. Empty: vpHostTime().
   std::function<double()> clock;
   //! Asked about twenty times a second while a frame is waited for: true ends the wait. Empty: never.
   std::function<bool()> stop;
