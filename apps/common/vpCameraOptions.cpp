@@ -38,7 +38,8 @@ void vpCameraOptions::check() const
   }
 }
 
-std::unique_ptr<vpFrameSource> vpCameraOptions::open(const vpVlpRig &rig) const
+std::unique_ptr<vpFrameSource> vpCameraOptions::open(const vpVlpRig &rig,
+                                                     const std::function<bool()> &stop) const
 {
   const bool resized = rig.resize.method != vpPictureResize::Method::none;
   vpCameraSettings settings;
@@ -48,7 +49,7 @@ std::unique_ptr<vpFrameSource> vpCameraOptions::open(const vpVlpRig &rig) const
   settings.region = vpCameraRegion{0, 0, resized ? rig.resize.sourceWidth : rig.width,
                                    resized ? rig.resize.sourceHeight : rig.height};
   vpCameraPatience patience;
-  patience.stop = vpInterrupt::requested;
+  patience.stop = [stop] { return vpInterrupt::requested() || (stop && stop()); };
   auto camera = std::make_unique<vpCameraSource>(uri, settings, patience);
   const vpCameraSettings now = camera->settings();
   if (now.exposure) {

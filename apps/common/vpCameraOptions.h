@@ -31,10 +31,10 @@ struct vpCameraOptions {
 
   /*!
     Opens it, with vpHostTime() as its clock: the sensor's whole picture where the rig states a resize, which
-    is then done here, else a picture of the rig's size. Waiting for a frame ends with vpInterrupt. \throw
-    vpException as vpCameraSource.
+    is then done here, else a picture of the rig's size. Waiting for a frame ends with vpInterrupt, or where
+    \e stop says so. \throw vpException as vpCameraSource.
   */
-  std::unique_ptr<vpFrameSource> open(const vpVlpRig &rig) const;
+  std::unique_ptr<vpFrameSource> open(const vpVlpRig &rig, const std::function<bool()> &stop = {}) const;
 
   //! Prints all cameras that are found, with what they can do. \return nothingFound where there is none.
   static vpExitCode list();

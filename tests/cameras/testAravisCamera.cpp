@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <visp3/vlp_core/vpHostTime.h>
 #include <visp3/vlp_core/vpTrajectory.h>
 #include <visp3/vlp_sensor/vpCameraSource.h>
 #include <visp3/vlp_simulation/vpScenario.h>
@@ -78,8 +79,7 @@ TEST(AravisCamera, FramesComeAtTheirRateWithRisingTimesOnTheHostsClock)
   std::vector<double> times;
   for (int k = 0; k < 13; ++k) {
     ASSERT_TRUE(camera.next(frame));
-    const double now =
-        std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    const double now = vpHostTime();
     EXPECT_LE(frame.timestamp, now);
     EXPECT_GT(frame.timestamp, now - 0.5);
     EXPECT_TRUE(times.empty() || frame.timestamp > times.back());
