@@ -67,7 +67,15 @@ macro(vp_create_module)
     PRIVATE "${CMAKE_CURRENT_LIST_DIR}/src")
   target_include_directories(${the_module} SYSTEM PUBLIC ${vlp_include_directories})
   target_link_libraries(${the_module} LINK_PUBLIC ${vlp_depends} ${ARGN})
-  set_target_properties(${the_module} PROPERTIES EXPORT_NAME ${name})
+  # Reading these headers is half of the time that a file takes. All modules share what the lowest one compiled.
+  if(the_module STREQUAL "visp_vlp_core")
+    target_precompile_headers(${the_module} PRIVATE <algorithm> <cmath> <functional> <memory> <optional> <string> <vector>
+                              <Eigen/Dense> <visp3/core/vpCameraParameters.h> <visp3/core/vpException.h>
+                              <visp3/core/vpHomogeneousMatrix.h> <visp3/core/vpImage.h>)
+  elseif(TARGET visp_vlp_core)
+    target_precompile_headers(${the_module} REUSE_FROM visp_vlp_core)
+  endif()
+  set_target_properties(${the_module} PROPERTIES EXPORT_NAME ${name} DEFINE_SYMBOL visp_vlp_EXPORTS)
   if(visp_vlp_VERSION)
     set_target_properties(${the_module} PROPERTIES VERSION ${visp_vlp_VERSION}
                           SOVERSION ${visp_vlp_VERSION_MAJOR}.${visp_vlp_VERSION_MINOR})
