@@ -1,0 +1,205 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_robot/vpDynamixelBus.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+constexpr double byteTime = 1e-5;       // s at 1 Mbit/s, ten bits each
+constexpr size_t aroundParameters = 11; // bytes of a status packet beside its parameters
+
+void append(std::vector<std::uint8_t> &bytes, std::uint16_t value)
+{
+  bytes.push_back(static_cast<std::uint8_t>(value & 0xFF));
+  bytes.push_back(static_cast<std::uint8_t>(value >> 8));
+}
+
+vpDynamixelPacket writeRequest(std::uint8_t id, std::uint16_t address, const std::vector<std::uint8_t> &bytes)
+{
+  vpDynamixelPacket request;
+  request.id = id;
+  request.instruction = vpDynamixelPacket::write;
+  append(request.parameters, address);
+  request.parameters.insert(request.parameters.end(), bytes.begin(), bytes.end());
+  return request;
+}
+
+//! "write of 24 bytes at 150 to device 200"
+std::string described(const vpDynamixelPacket &request)
+{
+  const std::vector<std::uint8_t> &given = request.parameters;
+  const std::string device = " device " + std::to_string(request.id);
+  if (request.instruction == vpDynamixelPacket::ping) {
+    return "ping of" + device;
+  }
+  const std::string at = " bytes at " + std::to_string(given[0] + 256 * given[1]);
+  return request.instruction == vpDynamixelPacket::read
+             ? "read of " + std::to_string(given[2] + 256 * given[3]) + at + " of" + device
+             : "write of " + std::to_string(given.size() - 2) + at + " to" + device;
+}
+
+std::string meaning(std::uint8_t error)
+{
+  static const std::array<const char *, 8> names = {"none",
+                                                    "result fail: it could not process the packet",
+                                                    "instruction error: it knows no such instruction",
+                                                    "CRC error",
+                                                    "data range error: a value is outside its range",
+                                                    "data length error: fewer bytes than the item has",
+                                                    "data limit error: a value passes its limit",
+                                                    "access error: it cannot be written now"};
+  return error < names.size() ? names[error] : "unknown error " + std::to_string(error);
+}
+} // namespace
+
+vpDynamixelBus::vpDynamixelBus(std::unique_ptr<vpByteTransport> transport) : m_transport(std::move(transport))
+{
+  m_doubtFrom = m_doubtUntil = -std::numeric_limits<double>::infinity();
+}
+
+vpDynamixelBus::Identity vpDynamixelBus::ping(std::uint8_t id, double deadline)
+{
+  vpDynamixelPacket request;
+  request.id = id;
+  const std::vector<std::uint8_t> got = transact(request, 3, deadline).parameters;
+  return {static_cast<std::uint16_t>(got[0] + 256 * got[1]), got[2]};
+}
+
+std::vector<std::uint8_t> vpDynamixelBus::read(std::uint8_t id, std::uint16_t address, std::uint16_t length,
+                                               double deadline)
+{
+  vpDynamixelPacket request;
+  request.id = id;
+  request.instruction = vpDynamixelPacket::read;
+  append(request.parameters, address);
+  append(request.parameters, length);
+  return transact(request, length, deadline).parameters;
+}
+
+void vpDynamixelBus::write(std::uint8_t id, std::uint16_t address, const std::vector<std::uint8_t> &bytes,
+                           double deadline)
+{
+  transact(writeRequest(id, address, bytes), 0, deadline);
+}
+
+void vpDynamixelBus::writeOnce(std::uint8_t id, std::uint16_t address, const std::vector<std::uint8_t> &bytes,
+                               double deadline)
+{
+  transact(writeRequest(id, address, bytes), 0, deadline, false);
+}
+
+vpDynamixelPacket vpDynamixelBus::transact(const vpDynamixelPacket &request, size_t parameters,
+                                           double deadline, bool repeat)
+{
+  const std::vector<std::uint8_t> bytes = request.encoded();
+  const double wire = byteTime * static_cast<double>(bytes.size() + aroundParameters + parameters);
+  ++m_statistics.transactions;
+  int attempts = 0, silent = 0;
+  bool clean = !doubtful();
+  const double began = now();
+  do {
+    ++attempts;
+    ++m_statistics.attempts;
+    if (!clean) {
+      m_transport->discard();
+    }
+    m_parser.reset();
+    const double sent = now();
+    vpDynamixelPacket answer;
+    const double patience = repeat ? std::min(deadline, sent + answerTime + wire) : deadline;
+    Outcome outcome = Outcome::silent;
+    if (m_transport->write(bytes.data(), bytes.size(), deadline)) {
+      outcome = await(request.id, parameters, patience, answer);
+    }
+    if (outcome == Outcome::answered) {
+      m_answeredFrom = doubtful() ? std::min(m_doubtFrom, sent) : sent;
+      m_answeredUntil = now();
+      m_statistics.alert |= (answer.error & 0x80) != 0;
+      const std::uint8_t error = answer.error & 0x7F;
+      if (error == vpDynamixelPacket::none) {
+        return answer;
+      }
+      if (error != vpDynamixelPacket::crcError) {
+        throw vpException(vpException::ioError, name() + ": " + described(request) + ": answered with " +
+                                                    meaning(error) + ", expected none");
+      }
+      outcome = Outcome::corrupted; // of the request, on its way
+    }
+    if (outcome == Outcome::silent) {
+      ++m_statistics.timeouts;
+      ++silent;
+      m_doubtFrom = doubtful() ? m_doubtFrom : sent;
+      m_doubtUntil = sent + lateAnswerTime;
+    } else {
+      ++m_statistics.crcErrors; // of this attempt's answer, unless another one may have come before it
+      m_doubtUntil = doubtful() ? sent + lateAnswerTime : m_doubtUntil;
+    }
+    clean = false;
+  } while (repeat && now() < deadline);
+  ++m_statistics.failures;
+  throw vpException(vpException::ioError,
+                    name() + ": " + described(request) + ": " + std::to_string(attempts) +
+                        " attempts within " + vpNumberText(1e-3 * std::round(1e3 * (now() - began))) +
+                        " s, " + std::to_string(silent) + " unanswered and " +
+                        std::to_string(attempts - silent) + " corrupted, expected a valid answer");
+}
+
+vpDynamixelBus::Outcome vpDynamixelBus::await(std::uint8_t id, size_t parameters, double deadline,
+                                              vpDynamixelPacket &answer)
+{
+  const std::uint64_t crcErrors = m_parser.crcErrors();
+  std::array<std::uint8_t, 512> bytes;
+  for (double patience = deadline;;) {
+    const size_t size = m_transport->read(bytes.data(), bytes.size(), patience);
+    if (size == 0) {
+      return Outcome::silent;
+    }
+    m_parser.push(bytes.data(), size);
+    while (const std::optional<vpDynamixelPacket> packet = m_parser.next()) {
+      const bool isAnswer = packet->instruction == vpDynamixelPacket::status && packet->id == id;
+      const bool failed = (packet->error & 0x7F) != 0; // which carries no parameters
+      if (isAnswer && (failed || packet->parameters.size() == parameters)) {
+        answer = *packet;
+        return Outcome::answered;
+      }
+      ++m_statistics.foreign;
+    }
+    if (m_parser.crcErrors() != crcErrors) {
+      return Outcome::corrupted;
+    }
+    patience = std::min(deadline, now() + silence);
+  }
+}
+
+bool vpDynamixelBus::doubtful() const
+{
+  return now() < m_doubtUntil;
+}
+
+void vpDynamixelBus::reopen()
+{
+  m_transport->reopen();
+  m_parser.reset();
+  m_doubtUntil = -std::numeric_limits<double>::infinity();
+}
+
+vpDynamixelStatistics vpDynamixelBus::statistics() const
+{
+  vpDynamixelStatistics statistics = m_statistics;
+  statistics.skippedBytes = m_parser.skippedBytes();
+  return statistics;
+}
+
+END_VISP_NAMESPACE
