@@ -11,7 +11,6 @@
 #include <utility>
 
 #include <visp3/core/vpException.h>
-#include <visp3/vlp_core/vpNumberText.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -19,6 +18,11 @@ namespace
 {
 constexpr double byteTime = 1e-5;       // s at 1 Mbit/s, ten bits each
 constexpr size_t aroundParameters = 11; // bytes of a status packet beside its parameters
+
+// Sent before a request that follows an unanswered one. A device that read a wrong length waits for bytes
+// that never were, and would swallow the request; these end the wait, and are nothing to a device that does
+// not.
+constexpr size_t padding = 256;
 
 void append(std::vector<std::uint8_t> &bytes, std::uint16_t value)
 {
@@ -103,8 +107,8 @@ void vpDynamixelBus::writeOnce(std::uint8_t id, std::uint16_t address, const std
 vpDynamixelPacket vpDynamixelBus::transact(const vpDynamixelPacket &request, size_t parameters,
                                            double deadline, bool repeat)
 {
-  const std::vector<std::uint8_t> bytes = request.encoded();
-  const double wire = byteTime * static_cast<double>(bytes.size() + aroundParameters + parameters);
+  std::vector<std::uint8_t> bytes = request.encoded();
+  const double wire = byteTime * static_cast<double>(bytes.size() + padding + aroundParameters + parameters);
   ++m_statistics.transactions;
   int attempts = 0, silent = 0;
   bool clean = !doubtful();
@@ -139,7 +143,9 @@ vpDynamixelPacket vpDynamixelBus::transact(const vpDynamixelPacket &request, siz
     }
     if (outcome == Outcome::silent) {
       ++m_statistics.timeouts;
-      ++silent;
+      if (silent++ == 0) {
+        bytes.insert(bytes.begin(), padding, 0);
+      }
       m_doubtFrom = doubtful() ? m_doubtFrom : sent;
       m_doubtUntil = sent + lateAnswerTime;
     } else {
@@ -149,11 +155,12 @@ vpDynamixelPacket vpDynamixelBus::transact(const vpDynamixelPacket &request, siz
     clean = false;
   } while (repeat && now() < deadline);
   ++m_statistics.failures;
+  const long milliseconds = std::lround(1e3 * (now() - began));
   throw vpException(vpException::ioError,
                     name() + ": " + described(request) + ": " + std::to_string(attempts) +
-                        " attempts within " + vpNumberText(1e-3 * std::round(1e3 * (now() - began))) +
-                        " s, " + std::to_string(silent) + " unanswered and " +
-                        std::to_string(attempts - silent) + " corrupted, expected a valid answer");
+                        " attempts within " + std::to_string(milliseconds) + " ms, " +
+                        std::to_string(silent) + " unanswered and " + std::to_string(attempts - silent) +
+                        " corrupted, expected a valid answer");
 }
 
 vpDynamixelBus::Outcome vpDynamixelBus::await(std::uint8_t id, size_t parameters, double deadline,

@@ -22,7 +22,8 @@ constexpr double calibrationTime = 6;       // s; the board takes up to 5
 constexpr double longestGyroInterval = 0.1; // s; over longer ones two readings of a rate say too little
 constexpr double speedMargin = 5;           // times the top speed that a hand may push the wheels to
 constexpr double tickMargin = 10;
-constexpr double largestGyro = 40; // rad/s; the sensor ends at 35
+constexpr int mostContradictions = 3; // more is no chance of a wrong CRC, 1 in 65536 corrupted answers
+constexpr double largestGyro = 40;    // rad/s; the sensor ends at 35
 
 //! The next value of a heartbeat. 0 is what a board starts with.
 std::uint8_t following(std::uint8_t heartbeat)
@@ -282,12 +283,13 @@ vpControlBlock vpRobotTurtleBot3::readTable(double deadline)
 vpControlBlock vpRobotTurtleBot3::readCurrentTable(double deadline)
 {
   vpControlBlock table;
-  do {
+  for (int contradictions = 0; contradictions < mostContradictions && now() < deadline;) {
     table = readTable(deadline);
     if (holdsCommand(table) && plausible(table)) {
       return table;
     }
-  } while (now() < deadline);
+    contradictions += !m_bus.doubtful();
+  }
   throw vpException(
       vpException::ioError,
       m_bus.name() + ": the board holds heartbeat " + std::to_string(table.get(Table::heartbeat)) +
