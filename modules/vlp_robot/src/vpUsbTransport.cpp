@@ -143,6 +143,7 @@ private:
   std::string m_serial; // of the device asked for, then of the one that was found
   Context m_context = Context(nullptr, libusb_exit);
   Handle m_handle = noHandle();
+  int m_claimed = 0; // interfaces: of two the control interface is the first
 };
 
 void vpUsbTransport::Impl::open()
@@ -168,8 +169,10 @@ void vpUsbTransport::Impl::open()
   m_handle = std::move(found[0].handle);
   try {
     libusb_set_auto_detach_kernel_driver(m_handle.get(), 1);
-    check(libusb_claim_interface(m_handle.get(), controlInterface), name(), "is in use");
-    check(libusb_claim_interface(m_handle.get(), dataInterface), name(), "is in use");
+    for (const int interface : {controlInterface, dataInterface}) {
+      check(libusb_claim_interface(m_handle.get(), interface), name(), "is in use");
+      ++m_claimed;
+    }
     setLine();
     discard(); // answers to whoever had it before
   } catch (...) {
@@ -194,17 +197,18 @@ void vpUsbTransport::Impl::setLine()
 void vpUsbTransport::Impl::close() noexcept
 {
   unread.clear();
-  if (!m_handle) {
-    return;
+  if (m_claimed == 2) {
+    libusb_control_transfer(m_handle.get(), toInterface, setControlLineState, 0, controlInterface, nullptr, 0,
+                            controlTimeout);
+    // The kernel's driver binds to the control interface and takes the data interface with it: that one must
+    // be free by then.
+    libusb_release_interface(m_handle.get(), dataInterface);
   }
-  libusb_control_transfer(m_handle.get(), toInterface, setControlLineState, 0, controlInterface, nullptr, 0,
-                          controlTimeout);
-  // The kernel's driver binds to the control interface and takes the data interface with it: that one must be
-  // free by then.
-  libusb_release_interface(m_handle.get(), dataInterface);
-  libusb_release_interface(m_handle.get(), controlInterface);
-  libusb_attach_kernel_driver(m_handle.get(),
-                              controlInterface); // also where a killed process had detached it
+  if (m_claimed > 0) {
+    libusb_release_interface(m_handle.get(), controlInterface);
+    libusb_attach_kernel_driver(m_handle.get(), controlInterface); // also where a killed process detached it
+  }
+  m_claimed = 0;
   m_handle.reset();
 }
 
