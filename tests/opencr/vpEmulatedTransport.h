@@ -35,6 +35,7 @@ public:
 
   //! From now on the cable is as bad as that.
   void setFaults(const vpFaultyLine::Faults &faults) { m_line = vpFaultyLine(faults); }
+  const vpFaultyLine &cable() const { return m_line; }
   void pullCable() { m_plugged = m_open = false; }
   void plugCable() { m_plugged = true; }
 

@@ -35,6 +35,7 @@ double vpBoardClock::hostTime(std::uint32_t millis, double from, double until)
   }
   const double begin = std::max(from, m_board + m_earliest);
   const double end = std::min(until, m_board + truncation + m_latest);
+  m_uncertainty = std::max(end - begin, 0.0) / 2;
   return std::clamp((begin + end) / 2, from, until);
 }
 

@@ -128,8 +128,8 @@ vpDynamixelPacket vpDynamixelBus::transact(const vpDynamixelPacket &request, siz
       outcome = await(request.id, parameters, patience, answer);
     }
     if (outcome == Outcome::answered) {
-      m_answeredFrom = doubtful() ? std::min(m_doubtFrom, sent) : sent;
       m_answeredUntil = now();
+      m_answeredFrom = doubtful() ? std::max(m_doubtFrom, m_answeredUntil - lateAnswerTime) : sent;
       m_statistics.alert |= (answer.error & 0x80) != 0;
       const std::uint8_t error = answer.error & 0x7F;
       if (error == vpDynamixelPacket::none) {
@@ -193,6 +193,14 @@ vpDynamixelBus::Outcome vpDynamixelBus::await(std::uint8_t id, size_t parameters
 bool vpDynamixelBus::doubtful() const
 {
   return now() < m_doubtUntil;
+}
+
+void vpDynamixelBus::settle()
+{
+  std::array<std::uint8_t, 512> bytes;
+  while (doubtful()) {
+    m_transport->read(bytes.data(), bytes.size(), m_doubtUntil);
+  }
 }
 
 void vpDynamixelBus::reopen()

@@ -22,6 +22,7 @@ constexpr double calibrationTime = 6;       // s; the board takes up to 5
 constexpr double longestGyroInterval = 0.1; // s; over longer ones two readings of a rate say too little
 constexpr double speedMargin = 5;           // times the top speed that a hand may push the wheels to
 constexpr double tickMargin = 10;
+constexpr double largestDoubt = 0.01; // s, about the time of a reading
 constexpr int mostContradictions = 3; // more is no chance of a wrong CRC, 1 in 65536 corrupted answers
 constexpr double largestGyro = 40;    // rad/s; the sensor ends at 35
 
@@ -79,7 +80,11 @@ void vpRobotTurtleBot3::begin()
   prepareMotors();
   m_clockOffset = m_settings.clock ? m_settings.clock() - now() : 0;
   m_clock.reset();
-  m_last = readingOf(readTable(now() + openingTime));
+  const double deadline = now() + openingTime;
+  do { // until one is dated; from then on the clock dates those of which an answer was late, too
+    m_bus.settle();
+    m_last = readingOf(readTable(deadline));
+  } while (m_clock.uncertainty() > largestDoubt && now() < deadline);
   m_odometry = {m_last.time + m_clockOffset, 0, 0};
   m_connected = true;
 }
@@ -174,12 +179,15 @@ vpOdometry vpRobotTurtleBot3::odometry()
   requireConnection();
   if (now() - m_last.time >= m_settings.odometryPeriod) {
     guarded([this] {
+      std::string problem = m_bus.name() + ": its answers come too late to be dated";
       try {
         sample(now() + m_settings.odometryDeadline);
-      } catch (const vpException &) {
-        if (now() - m_last.time > m_settings.odometryAge) {
-          throw;
-        }
+      } catch (const vpException &error) {
+        problem = error.getStringMessage();
+      }
+      if (now() - m_last.time > m_settings.odometryAge) {
+        throw vpException(vpException::ioError,
+                          "no odometry for " + vpNumberText(m_settings.odometryAge) + " s: " + problem);
       }
     });
   }
@@ -325,7 +333,8 @@ vpRobotTurtleBot3::Reading vpRobotTurtleBot3::readingOf(const vpControlBlock &ta
 void vpRobotTurtleBot3::sample(double deadline)
 {
   const Reading reading = readingOf(readCurrentTable(deadline));
-  if (reading.time > m_last.time) { // not an older one that came late
+  if (reading.time > m_last.time &&
+      m_clock.uncertainty() <= largestDoubt) { // not an older one that came late
     const vpBaseVelocity mean = meanVelocity(m_last, reading);
     m_odometry = {reading.time + m_clockOffset, mean.v, mean.w};
     m_last = reading;

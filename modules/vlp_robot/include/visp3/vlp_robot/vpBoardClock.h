@@ -31,6 +31,9 @@ public:
   */
   double hostTime(std::uint32_t millis, double from, double until);
 
+  //! s by which the last hostTime() may be off, either way.
+  double uncertainty() const { return m_uncertainty; }
+
   //! ms that the board counted from the last reading to \e millis, negative where it went backwards: the
   //! board restarted. 0 where there is no last reading.
   std::int32_t sinceLast(std::uint32_t millis) const;
@@ -43,6 +46,7 @@ public:
 private:
   bool m_started = false;
   std::uint32_t m_lastMillis = 0;
+  double m_uncertainty = 0;            // s
   double m_board = 0;                  // s that the board counted since the first reading
   double m_earliest = 0, m_latest = 0; // s, bounds of host - m_board
 };

@@ -62,6 +62,8 @@ public:
 
   //! Whether an answer to a request given up may still come.
   bool doubtful() const;
+  //! Waits until it is not, for lateAnswerTime at most. \throw vpException (ioError) where the line is gone.
+  void settle();
 
   /*!
     s, of now(): the device took the last request that it answered after answeredFrom() and before
