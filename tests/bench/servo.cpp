@@ -213,6 +213,19 @@ void fast(int seeds)
   lines(0.2, seeds);
 }
 
+void debug(int seeds)
+{
+  header();
+  Drive asked;
+  asked.path = vpPath::polyline({{-0.35, -0.35}, {0.35, -0.35}, {0.35, 0.35}, {-0.35, 0.35}}, true);
+  asked.speed = 0.15;
+  asked.pose = Pose::calibratedOdometry;
+  for (unsigned int laps : {1u, 2u, 3u, 5u, 10u}) {
+    asked.laps = laps;
+    row(std::to_string(laps), asked, seeds);
+  }
+}
+
 void slow(int seeds)
 {
   lines(0.004, seeds);
@@ -269,7 +282,7 @@ int main(int argc, char **argv)
   const std::string part = argc > 1 ? argv[1] : "all";
   const int seeds = argc > 2 ? std::max(1, std::atoi(argv[2])) : 20;
   const std::vector<std::pair<std::string, std::function<void(int)>>> parts = {
-      {"fast", fast}, {"slow", slow}, {"shapes", shapes}, {"start", start}};
+      {"fast", fast}, {"slow", slow}, {"shapes", shapes}, {"start", start}, {"debug", debug}};
   for (const auto &[name, print] : parts) {
     if (part == "all" || part == name) {
       print(seeds);

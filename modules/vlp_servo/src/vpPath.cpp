@@ -165,7 +165,8 @@ double vpPath::length() const
 vpPathPoint vpPath::at(double s) const
 {
   const double all = length();
-  return m_shape->at(m_closed ? s - all * std::floor(s / all) : std::clamp(s, 0.0, all));
+  const double lap = m_closed ? all * std::floor((s + vpPathShape::rounding) / all) : 0;
+  return m_shape->at(std::clamp(s - lap, 0.0, all));
 }
 
 double vpPath::closest(const Eigen::Vector2d &place, double from, double to) const

@@ -35,7 +35,7 @@ vpPolylineShape::vpPolylineShape(std::vector<Eigen::Vector2d> points, bool close
 
 vpPathPoint vpPolylineShape::at(double s) const
 {
-  const auto later = std::upper_bound(m_lengths.begin() + 1, m_lengths.end() - 1, s);
+  const auto later = std::upper_bound(m_lengths.begin() + 1, m_lengths.end() - 1, s + vpPathShape::rounding);
   const size_t end = static_cast<size_t>(later - m_lengths.begin());
   const Eigen::Vector2d way = m_points[end] - m_points[end - 1];
   vpPathPoint point;

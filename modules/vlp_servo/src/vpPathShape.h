@@ -16,6 +16,9 @@ BEGIN_VISP_NAMESPACE
 class vpPathShape
 {
 public:
+  //! m: a sum of laps and legs may miss a corner by so much, and means it all the same.
+  static constexpr double rounding = 1e-9;
+
   virtual ~vpPathShape() = default;
   virtual double length() const = 0;          // m
   virtual vpPathPoint at(double s) const = 0; // s from 0 to length()

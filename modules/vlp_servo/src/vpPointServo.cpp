@@ -104,15 +104,14 @@ Eigen::Vector2d vpPointServo::limited(const Eigen::Vector2d &error, double speed
 
 /*!
   An error that stays tells of wheels that err in proportion to the speed. With gain lambda and integral gain
-  mu, errors obey s^2 + lambda s + lambda mu = 0: no overshoot as long as mu <= lambda / 4.
+  mu, errors obey s^2 + lambda s + lambda mu = 0: no overshoot as long as mu <= lambda / 4. At a crawl, as on
+  the way out of a corner, an error is more likely left over from before, and is summed up the less.
 */
 void vpPointServo::integrate(double speed, double dt)
 {
-  constexpr double least = 0.002; // m/s, below which the speed tells nothing
-  if (speed < least) {
-    return;
-  }
-  const double rate = m_settings.gain * m_settings.integralGain * dt / speed;
+  constexpr double crawl = 0.05; // m/s
+  const double rate =
+      m_settings.gain * m_settings.integralGain * dt / std::max(speed, crawl) * std::min(1.0, speed / crawl);
   const Eigen::Vector2d most(m_settings.mostSpeedScale, m_settings.mostCurvature);
   m_integral += rate * Eigen::Vector2d(m_error.x(), m_error.y() / m_settings.lookAhead);
   m_integral = m_integral.cwiseMax(-most).cwiseMin(most);

@@ -17,7 +17,7 @@ struct VISP_EXPORT vpPathFollowerSettings {
   double errorSlowest = 0.25; // m, from which on it goes no faster than the share slowestShare
   double slowestShare = 0.2;
   double turnFirst = 1;        // rad off the path's heading, from which on the base first turns on the spot
-  double turnTolerance = 0.02; // rad, to which it turns before it drives on
+  double turnTolerance = 0.01; // rad, to which it turns before it drives on
   double endTolerance = 0.003; // m along the path, to which it drives to the end
 
   //! \throw vpException (badValue) with one line: the field, what came and what was expected.
