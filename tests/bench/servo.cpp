@@ -31,18 +31,18 @@ struct Drive {
   double speed = 0.2; // m/s
   unsigned int laps = 1;
   Pose pose = Pose::lamps;
-  bool typical = false;         // rig
+  bool typical = false;          // rig
   double offset = 0, turned = 0; // m to the left of the path, rad off its heading, at the start
 };
 
 //! Of one drive.
 struct Result {
-  double seen = NAN;                        // m, RMS across the path of the poses that the loop believed in
-  double truth = NAN, worst = NAN;          // m, likewise of the base, and its largest
-  double rig = NAN;                         // m, RMS of the difference of both
-  double lastLap = NAN;                     // m, RMS of the base in the last lap
-  double within = NAN;                      // m of the path until it stays below 10 mm and 3 degrees
-  double seconds = NAN;                     // of computing
+  double seen = NAN;               // m, RMS across the path of the poses that the loop believed in
+  double truth = NAN, worst = NAN; // m, likewise of the base, and its largest
+  double rig = NAN;                // m, RMS of the difference of both
+  double lastLap = NAN;            // m, RMS of the base in the last lap
+  double within = NAN;             // m of the path until it stays below 10 mm and 3 degrees
+  double seconds = NAN;            // of computing
   bool arrived = false;
 };
 
@@ -101,9 +101,9 @@ Result drive(const Drive &asked, std::uint64_t seed)
   }
   const vpPathPoint begin = asked.path.at(0);
   vpServoSimulationSettings settings;
-  settings.startX = begin.place.x() - asked.offset * std::sin(begin.heading);
-  settings.startY = begin.place.y() + asked.offset * std::cos(begin.heading);
-  settings.startYaw = begin.heading + asked.turned;
+  settings.start.x = begin.place.x() - asked.offset * std::sin(begin.heading);
+  settings.start.y = begin.place.y() + asked.offset * std::cos(begin.heading);
+  settings.start.yaw = begin.heading + asked.turned;
   vpServoSimulation simulation(scenario, seed, settings);
   const std::unique_ptr<vpPoseSource> poses = posesOf(asked, simulation, scenario.motion.robot);
   vpServoLoopSettings servo;
@@ -119,8 +119,7 @@ Result drive(const Drive &asked, std::uint64_t seed)
   if (!result.arrived) {
     std::fprintf(stderr, "seed %d: %s\n", static_cast<int>(seed), run.reason.c_str());
   }
-  const auto truth =
-      vpTrackErrorsOf(asked.path, run, [&](double time) { return simulation.wMb(time); });
+  const auto truth = vpTrackErrorsOf(asked.path, run, [&](double time) { return simulation.wMb(time); });
   const auto seen = vpTrackErrorsOf(asked.path, run);
   std::vector<double> across, believed, apart, last;
   result.worst = result.within = 0;
@@ -166,9 +165,10 @@ double quantile(const std::vector<Result> &results, double Result::*member, doub
 
 void header()
 {
-  std::printf("\n| drive | seeds | arrived | RMS across the path, true: median, worst, mm | as seen by the loop, "
-              "mm | apart, the rig's, mm | largest of all, mm | RMS of the last lap, median, mm | s of computing |\n"
-              "|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "\n| drive | seeds | arrived | RMS across the path, true: median, worst, mm | as seen by the loop, "
+      "mm | apart, the rig's, mm | largest of all, mm | RMS of the last lap, median, mm | s of computing |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
 }
 
 void row(const std::string &name, const Drive &asked, int seeds)
@@ -259,8 +259,9 @@ void shapes(int seeds)
 //! From beside the line: how far along it until the base stays near.
 void start(int seeds)
 {
-  std::printf("\n| start at 0.1 m/s | seeds | along the path until it stays within 10 mm and 3 degrees: median, "
-              "worst, m |\n|---|---|---|\n");
+  std::printf(
+      "\n| start at 0.1 m/s | seeds | along the path until it stays within 10 mm and 3 degrees: median, "
+      "worst, m |\n|---|---|---|\n");
   for (const double side : {-1.0, 1.0}) {
     for (const double turned : {-30.0, 30.0}) {
       Drive asked;

@@ -20,7 +20,9 @@ vpTrackError errorOf(const vpPath &path, const vpServoStep &step, double end, co
       path.closest(place, std::max(0.0, step.reference.s - reach), std::min(step.reference.s + reach, end));
   const vpPathPoint point = path.at(error.s);
   error.across = std::copysign((place - point.place).norm(), path.offset(place, error.s));
-  error.heading = std::remainder(std::atan2(wMb[1][0], wMb[0][0]) - point.heading, 2 * M_PI);
+  // Of a polyline the closest place may lie on the leg beyond a corner already.
+  const double heading = path.corners().empty() ? point.heading : step.reference.heading;
+  error.heading = std::remainder(std::atan2(wMb[1][0], wMb[0][0]) - heading, 2 * M_PI);
   error.turning = step.reference.turning;
   return error;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <thread>
 #include <utility>
 
 BEGIN_VISP_NAMESPACE
@@ -17,47 +18,66 @@ namespace
 class DrivenByLoop : public vpRobotMotion
 {
 public:
-  explicit DrivenByLoop(std::shared_ptr<vpSimulatorTurtleBot3> robot)
-      : m_robot(std::move(robot)), m_start(m_robot->time())
+  //! \param begin s, on the robot's clock, where the world's is 0. \param mutex Of the robot, or none.
+  DrivenByLoop(std::shared_ptr<vpSimulatorTurtleBot3> robot, double begin, std::mutex *mutex)
+      : m_robot(std::move(robot)), m_begin(begin), m_mutex(mutex)
   {
   }
-  vpHomogeneousMatrix wMb(double time) override { return m_robot->wMb(std::max(time, m_start)); }
+  vpHomogeneousMatrix wMb(double time) override
+  {
+    const auto lock = m_mutex ? std::unique_lock<std::mutex>(*m_mutex) : std::unique_lock<std::mutex>();
+    return m_robot->wMb(m_begin + std::max(time, 0.0));
+  }
   double duration() const override { return std::numeric_limits<double>::infinity(); }
 
 private:
   std::shared_ptr<vpSimulatorTurtleBot3> m_robot;
-  double m_start; // s
+  double m_begin; // s
+  std::mutex *m_mutex;
 };
 
-//! s, from a frame's time stamp to the end of the exposure of its last line.
+//! s, from a frame's time stamp to the end of its last line, and a little by which the renderer looks beyond.
 double readoutOf(const vpVlpRig &rig)
 {
+  constexpr double tail = 0.002; // s
   const vpLineTiming timing = rig.lineTiming();
-  return std::max(timing.middle(0), timing.middle(timing.lines() - 1)) + rig.shutter.exposure / 2;
+  return std::max(timing.middle(0), timing.middle(timing.lines() - 1)) + rig.shutter.exposure / 2 + tail;
 }
 
-vpScenario endless(const vpScenario &scenario)
+std::shared_ptr<vpSimulatorTurtleBot3> robotOf(const vpScenario &scenario, std::uint64_t seed,
+                                               const vpServoStart &start, double time)
 {
-  vpScenario longer = scenario;
-  longer.frames = std::numeric_limits<size_t>::max();
-  return longer;
+  vpSimulatorTurtleBot3Settings robot = scenario.motion.robot;
+  robot.seed = seed;
+  robot.startTime = time;
+  robot.startX = start.x;
+  robot.startY = start.y;
+  robot.startYaw = start.yaw;
+  return std::make_shared<vpSimulatorTurtleBot3>(robot);
+}
+
+std::unique_ptr<vpSimulation> worldOf(const vpScenario &scenario, std::uint64_t seed,
+                                      std::unique_ptr<vpRobotMotion> motion)
+{
+  vpScenario endless = scenario;
+  endless.frames = std::numeric_limits<size_t>::max();
+  return std::make_unique<vpSimulation>(endless, seed, std::move(motion));
 }
 } // namespace
 
 vpServoSimulation::vpServoSimulation(const vpScenario &scenario, std::uint64_t seed,
                                      const vpServoSimulationSettings &settings)
-    : localizer(scenario.rig, scenario.map), m_settings(settings), m_frameTime(1 / scenario.frameRate)
+    : vpServoSimulation(scenario, seed, settings, vpVlpLocalizer(scenario.rig, scenario.map))
 {
-  vpSimulatorTurtleBot3Settings robot = scenario.motion.robot;
-  robot.seed = seed;
-  robot.startX = settings.startX;
-  robot.startY = settings.startY;
-  robot.startYaw = settings.startYaw;
-  m_robot = std::make_shared<vpSimulatorTurtleBot3>(robot);
-  m_simulation =
-      std::make_unique<vpSimulation>(endless(scenario), seed, std::make_unique<DrivenByLoop>(m_robot));
-  constexpr double tail = 0.002; // s, by which the renderer looks beyond its last line
-  m_readout = readoutOf(m_simulation->camera().rig) + tail;
+}
+
+vpServoSimulation::vpServoSimulation(const vpScenario &scenario, std::uint64_t seed,
+                                     const vpServoSimulationSettings &settings, vpVlpLocalizer localized)
+    : localizer(std::move(localized)), m_settings(settings),
+      m_robot(robotOf(scenario, seed, settings.start, 0)),
+      m_simulation(worldOf(scenario, seed, std::make_unique<DrivenByLoop>(m_robot, 0, nullptr))),
+      m_frameTime(1 / scenario.frameRate), m_readout(readoutOf(m_simulation->camera().rig))
+{
 }
 
 vpServoSimulation::~vpServoSimulation() = default;
@@ -86,6 +106,65 @@ std::optional<vpLocatedPicture> vpServoSimulation::next(double now)
   picture.filter = localizer.filter;
   picture.I = std::make_shared<vpImage<unsigned char>>(std::move(frame.I));
   return picture;
+}
+
+vpLiveSimulation::vpLiveSimulation(const vpScenario &scenario, std::uint64_t seed, const vpServoStart &start,
+                                   std::function<double()> now)
+    : m_now(std::move(now)), m_begin(m_now()), m_robot(robotOf(scenario, seed, start, m_begin)),
+      m_simulation(worldOf(scenario, seed, std::make_unique<DrivenByLoop>(m_robot, m_begin, &m_mutex))),
+      m_frameTime(1 / scenario.frameRate), m_readout(readoutOf(m_simulation->camera().rig))
+{
+}
+
+vpLiveSimulation::~vpLiveSimulation() = default;
+
+//! The robot, its world run on to now. To be called with the mutex locked.
+vpSimulatorTurtleBot3 &vpLiveSimulation::upToDate()
+{
+  m_robot->advance(std::max(m_now(), m_robot->time()));
+  return *m_robot;
+}
+
+vpBaseVelocity vpLiveSimulation::setVelocity(double v, double w)
+{
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  return upToDate().setVelocity(v, w);
+}
+
+void vpLiveSimulation::stop()
+{
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  upToDate().stop();
+}
+
+vpOdometry vpLiveSimulation::odometry()
+{
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  return upToDate().odometry();
+}
+
+vpBaseLimits vpLiveSimulation::limits() const
+{
+  return m_robot->limits();
+}
+
+vpHomogeneousMatrix vpLiveSimulation::wMb(double time)
+{
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  return upToDate().wMb(time);
+}
+
+bool vpLiveSimulation::next(vpVlpFrame &frame)
+{
+  const double read = m_begin + static_cast<double>(m_pictures++) * m_frameTime + m_readout;
+  std::this_thread::sleep_for(std::chrono::duration<double>(std::max(0.0, read - m_now())));
+  {
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    upToDate();
+  }
+  m_simulation->next(frame);
+  frame.timestamp += m_begin;
+  return true;
 }
 
 END_VISP_NAMESPACE
