@@ -4,8 +4,7 @@
  */
 #include "vpServoWorld.h"
 
-#include <visp3/core/vpException.h>
-#include <visp3/vlp_core/vpNumberText.h>
+#include "vpBoardServoWorld.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -90,9 +89,7 @@ private:
 std::unique_ptr<vpServoWorld> vpOpenServoWorld(const vpVlpServoOptions &options, const vpPath &path)
 {
   if (options.robot != "sim") {
-    throw vpException(vpException::notImplementedError,
-                      "--robot: " + vpShown(options.robot) +
-                          ", for which this build has no driver, expected sim");
+    return std::make_unique<vpBoardServoWorld>(options);
   }
   vpServoSimulationSettings settings;
   settings.start = options.startOn(path);
