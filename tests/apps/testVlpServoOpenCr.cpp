@@ -14,7 +14,7 @@
 namespace
 {
 constexpr double motorLag = 0.03; // s
-const double decay = motorLag * std::log(0.2 / 0.001);
+const double decay = motorLag * std::log(0.16 / 0.001);
 
 vpSimulatorTurtleBot3Settings world()
 {
@@ -23,7 +23,7 @@ vpSimulatorTurtleBot3Settings world()
   return settings;
 }
 
-//! vlp-servo at 0.2 m/s by odometry, on a board behind a pseudo-terminal.
+//! vlp-servo at 0.16 m/s by odometry, on a board behind a pseudo-terminal.
 struct ServoOnBoard : testing::Test {
   ServoOnBoard() { terminal.serve(); }
 
@@ -31,7 +31,7 @@ struct ServoOnBoard : testing::Test {
   {
     const std::string path = folder.write("path.yaml", "type: polyline\npoints_m: [[0, 0], [" +
                                                            std::to_string(length) + ", 0]]\nclosed: false\n");
-    return {"--robot",   "opencr:" + terminal.device(), "--path", path, "--odometry-only", "--speed", "0.2",
+    return {"--robot",   "opencr:" + terminal.device(), "--path", path, "--odometry-only", "--speed", "0.16",
             "--headless"};
   }
 
@@ -55,7 +55,7 @@ TEST_F(VlpServoOpenCr, StandsOnSignals)
 {
   for (const int signal : {SIGINT, SIGTERM, SIGKILL}) {
     vpProcess servo("vlp-servo", arguments(100));
-    ASSERT_TRUE(vpWaitUntilItDrives(board, 0.19)) << servo.err();
+    ASSERT_TRUE(vpWaitUntilItDrives(board, 0.15)) << servo.err();
     servo.signal(signal);
     const double sent = vpTimeOf(board);
     const double standstill = vpStandstillAfter(board, sent);
@@ -69,7 +69,7 @@ TEST_F(VlpServoOpenCr, StandsOnSignals)
 TEST_F(VlpServoOpenCr, StandsWhenTheCableIsPulledAndSaysSo)
 {
   vpProcess servo("vlp-servo", arguments(100));
-  ASSERT_TRUE(vpWaitUntilItDrives(board, 0.19)) << servo.err();
+  ASSERT_TRUE(vpWaitUntilItDrives(board, 0.15)) << servo.err();
   const std::string device = terminal.device();
   const double pulled = vpTimeOf(board);
   terminal.pullCable();

@@ -85,6 +85,20 @@ TEST_F(UsbTransport, ABoardInUseIsRefused)
   EXPECT_TRUE(usb.state().dtr);
 }
 
+TEST_F(UsbTransport, OfTwoBoardsOneHasToBeNamed)
+{
+  vpRealTimeBoard secondBoard;
+  vpEmulatedUsbBoard second(secondBoard, "FF34");
+  usb.plug(7);
+  second.plug(9);
+  EXPECT_EQ(vpAttachedBoards().size(), 2u);
+  vpExpectError([] { vpUsbTransport line; },
+                {"opencr:usb: 2 devices attached, expected one of:", " opencr:usb:FF12", " opencr:usb:FF34"});
+  EXPECT_EQ(vpUsbTransport("FF34").name(), "opencr:usb:FF34");
+  EXPECT_EQ(usb.state().claims, 0);
+  EXPECT_EQ(second.state().claims, 2);
+}
+
 TEST_F(UsbTransport, DrivesTheBase)
 {
   usb.plug(7);

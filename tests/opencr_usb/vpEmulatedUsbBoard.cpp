@@ -55,6 +55,18 @@ T *contents(const Data &data)
   return reinterpret_cast<T *>(data->data);
 }
 
+//! The world of all boards that there are at a time: umockdev knows one for a process.
+std::shared_ptr<UMockdevTestbed> testbed()
+{
+  static std::weak_ptr<UMockdevTestbed> world;
+  std::shared_ptr<UMockdevTestbed> shared = world.lock();
+  if (!shared) {
+    shared.reset(umockdev_testbed_new(), [](UMockdevTestbed *one) { g_object_unref(one); });
+    world = shared;
+  }
+  return shared;
+}
+
 //! A request on its way, in our copy.
 struct Urb {
   Data data;
@@ -69,8 +81,7 @@ class vpEmulatedUsbBoard::Impl
 {
 public:
   Impl(vpRealTimeBoard &board, const std::string &serial)
-      : m_board(board), m_serial(serial), m_testbed(umockdev_testbed_new()),
-        m_handler(umockdev_ioctl_base_new())
+      : m_board(board), m_serial(serial), m_testbed(testbed()), m_handler(umockdev_ioctl_base_new())
   {
     g_signal_connect(m_handler, "handle-ioctl", G_CALLBACK(&Impl::handle), this);
   }
@@ -78,7 +89,6 @@ public:
   {
     unplug();
     g_object_unref(m_handler);
-    g_object_unref(m_testbed);
   }
 
   void plug(int number);
@@ -106,7 +116,7 @@ private:
 
   vpRealTimeBoard &m_board;
   std::string m_serial;
-  UMockdevTestbed *m_testbed;
+  std::shared_ptr<UMockdevTestbed> m_testbed;
   UMockdevIoctlBase *m_handler;
   std::string m_node;        // /dev/bus/usb/..., empty while unplugged
   std::string m_path;        // in sysfs
@@ -131,8 +141,8 @@ void vpEmulatedUsbBoard::Impl::plug(int number)
       "\nE: DEVTYPE=usb_device\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=" +
       std::to_string(number) + "\\n\nA: speed=12\\n\nH: descriptors=" + withoutBlanks(deviceDescriptor) +
       (m_serial.empty() ? "00" : "03") + "01" + withoutBlanks(configuration) + "\n";
-  if (!umockdev_testbed_attach_ioctl(m_testbed, m_node.c_str(), m_handler, nullptr) ||
-      !umockdev_testbed_add_from_string(m_testbed, text.c_str(), nullptr)) {
+  if (!umockdev_testbed_attach_ioctl(m_testbed.get(), m_node.c_str(), m_handler, nullptr) ||
+      !umockdev_testbed_add_from_string(m_testbed.get(), text.c_str(), nullptr)) {
     throw std::runtime_error("no emulated USB device; umockdev-wrapper?");
   }
 }
@@ -150,9 +160,9 @@ void vpEmulatedUsbBoard::Impl::unplug()
       m_reading.pop_front();
     }
   }
-  umockdev_testbed_uevent(m_testbed, ("/sys" + m_path).c_str(), "remove");
-  umockdev_testbed_remove_device(m_testbed, ("/sys" + m_path).c_str());
-  umockdev_testbed_detach_ioctl(m_testbed, m_node.c_str(), nullptr);
+  umockdev_testbed_uevent(m_testbed.get(), ("/sys" + m_path).c_str(), "remove");
+  umockdev_testbed_remove_device(m_testbed.get(), ("/sys" + m_path).c_str());
+  umockdev_testbed_detach_ioctl(m_testbed.get(), m_node.c_str(), nullptr);
   m_node.clear();
 }
 

@@ -130,5 +130,5 @@ TEST(OpenTurtleBot3, ASilentLineIsNoBoard)
   vpPseudoTerminal terminal;
   vpExpectError(
       [&] { vpOpenTurtleBot3("opencr:" + terminal.device()); },
-      {terminal.device() + ": ping of device 200: ", "attempts within 1000 ms", "expected a valid answer"});
+      {terminal.device() + ": ping of device 200: ", " attempts within 1", "expected a valid answer"});
 }

@@ -110,57 +110,71 @@ vpDynamixelPacket vpDynamixelBus::transact(const vpDynamixelPacket &request, siz
   std::vector<std::uint8_t> bytes = request.encoded();
   const double wire = byteTime * static_cast<double>(bytes.size() + padding + aroundParameters + parameters);
   ++m_statistics.transactions;
-  int attempts = 0, silent = 0;
-  bool clean = !doubtful();
   const double began = now();
+  int corrupted = 0, silent = 0;
   do {
-    ++attempts;
-    ++m_statistics.attempts;
-    if (!clean) {
+    if (corrupted + silent > 0 || doubtful()) {
       m_transport->discard();
     }
-    m_parser.reset();
-    const double sent = now();
     vpDynamixelPacket answer;
-    const double patience = repeat ? std::min(deadline, sent + answerTime + wire) : deadline;
-    Outcome outcome = Outcome::silent;
-    if (m_transport->write(bytes.data(), bytes.size(), deadline)) {
-      outcome = await(request.id, parameters, patience, answer);
-    }
-    if (outcome == Outcome::answered) {
-      m_answeredUntil = now();
-      m_answeredFrom = doubtful() ? std::max(m_doubtFrom, m_answeredUntil - lateAnswerTime) : sent;
-      m_statistics.alert |= (answer.error & 0x80) != 0;
-      const std::uint8_t error = answer.error & 0x7F;
-      if (error == vpDynamixelPacket::none) {
-        return answer;
-      }
-      if (error != vpDynamixelPacket::crcError) {
+    const double until = repeat ? std::min(deadline, now() + answerTime + wire) : deadline;
+    switch (attempt(bytes, request.id, parameters, until, answer)) {
+    case Outcome::answered:
+      if (const std::uint8_t error = answer.error & 0x7F; error != vpDynamixelPacket::none) {
         throw vpException(vpException::ioError, name() + ": " + described(request) + ": answered with " +
                                                     meaning(error) + ", expected none");
       }
-      outcome = Outcome::corrupted; // of the request, on its way
-    }
-    if (outcome == Outcome::silent) {
-      ++m_statistics.timeouts;
+      return answer;
+    case Outcome::corrupted:
+      ++corrupted;
+      break;
+    case Outcome::silent:
       if (silent++ == 0) {
         bytes.insert(bytes.begin(), padding, 0);
       }
-      m_doubtFrom = doubtful() ? m_doubtFrom : sent;
-      m_doubtUntil = sent + lateAnswerTime;
-    } else {
-      ++m_statistics.crcErrors; // of this attempt's answer, unless another one may have come before it
-      m_doubtUntil = doubtful() ? sent + lateAnswerTime : m_doubtUntil;
+      break;
     }
-    clean = false;
   } while (repeat && now() < deadline);
   ++m_statistics.failures;
   const long milliseconds = std::lround(1e3 * (now() - began));
   throw vpException(vpException::ioError,
-                    name() + ": " + described(request) + ": " + std::to_string(attempts) +
+                    name() + ": " + described(request) + ": " + std::to_string(silent + corrupted) +
                         " attempts within " + std::to_string(milliseconds) + " ms, " +
-                        std::to_string(silent) + " unanswered and " + std::to_string(attempts - silent) +
+                        std::to_string(silent) + " unanswered and " + std::to_string(corrupted) +
                         " corrupted, expected a valid answer");
+}
+
+//! Sends a request once and waits for its answer. What came of it is counted, and what may still come.
+vpDynamixelBus::Outcome vpDynamixelBus::attempt(const std::vector<std::uint8_t> &bytes, std::uint8_t id,
+                                                size_t parameters, double until, vpDynamixelPacket &answer)
+{
+  ++m_statistics.attempts;
+  m_parser.reset();
+  const double sent = now();
+  Outcome outcome = Outcome::silent;
+  if (m_transport->write(bytes.data(), bytes.size(), until)) {
+    outcome = await(id, parameters, until, answer);
+  }
+  if (outcome == Outcome::answered && (answer.error & 0x7F) == vpDynamixelPacket::crcError) {
+    outcome = Outcome::corrupted; // of the request, on its way
+  }
+  switch (outcome) {
+  case Outcome::answered:
+    m_answeredUntil = now();
+    m_answeredFrom = doubtful() ? std::max(m_doubtFrom, m_answeredUntil - lateAnswerTime) : sent;
+    m_statistics.alert |= (answer.error & 0x80) != 0;
+    break;
+  case Outcome::corrupted: // this attempt's answer, unless that of another one may have come before it
+    ++m_statistics.crcErrors;
+    m_doubtUntil = doubtful() ? sent + lateAnswerTime : m_doubtUntil;
+    break;
+  case Outcome::silent:
+    ++m_statistics.timeouts;
+    m_doubtFrom = doubtful() ? m_doubtFrom : sent;
+    m_doubtUntil = sent + lateAnswerTime;
+    break;
+  }
+  return outcome;
 }
 
 vpDynamixelBus::Outcome vpDynamixelBus::await(std::uint8_t id, size_t parameters, double deadline,

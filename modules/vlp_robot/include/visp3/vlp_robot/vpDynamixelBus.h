@@ -84,6 +84,8 @@ private:
 
   vpDynamixelPacket transact(const vpDynamixelPacket &request, size_t parameters, double deadline,
                              bool repeat = true);
+  Outcome attempt(const std::vector<std::uint8_t> &bytes, std::uint8_t id, size_t parameters, double until,
+                  vpDynamixelPacket &answer);
   Outcome await(std::uint8_t id, size_t parameters, double deadline, vpDynamixelPacket &answer);
 
   std::unique_ptr<vpByteTransport> m_transport;
