@@ -290,8 +290,12 @@ void printFaults()
       {"all bytes lost", bad(0, 1), true},
       {"all bytes corrupted", bad(1, 0), true},
       {"5 % of bytes corrupted", bad(0.05, 0), true},
-      {"a command refused",
-       [](auto &emulated, auto &) { emulated.board.failNext(vpDynamixelPacket::dataLimit); }, true},
+      {"a command answered with an error",
+       [](auto &emulated, auto &base) {
+         emulated.board.failNext(vpDynamixelPacket::dataLimit);
+         base->setVelocity(0.2, 0);
+       },
+       true},
       {"board restarted", [](auto &emulated, auto &) { emulated.board.restart(); }, true},
   };
   constexpr int trials = 200;

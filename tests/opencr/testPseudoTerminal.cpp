@@ -36,7 +36,7 @@ TEST(PseudoTerminal, DrivesOverASerialDevice)
   const auto base = vpOpenTurtleBot3("opencr:" + terminal.device());
   vpOdometryWay way = vpDriveInRealTime(*base, {0.2, 0}, 1.5);
   base->stop();
-  EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.2 / 0.001) + 0.011);
+  EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.2 / 0.001) + 0.021);
   way.add(base->odometry()); // one sample of all the time since
   EXPECT_GT(way.metres, 0.15);
   EXPECT_NEAR(way.metres, vpWayOf(board), 0.0002); // a tick is 0.05 mm
@@ -57,7 +57,7 @@ TEST(PseudoTerminal, LosesNoTickOnABadLine)
   EXPECT_GT(base->statistics().timeouts + base->statistics().crcErrors, 0u);
   board.setFaults({});
   base->stop();
-  EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.1 / 0.001) + 0.011);
+  EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.1 / 0.001) + 0.021);
   way.add(base->odometry());
   EXPECT_NEAR(way.metres, vpWayOf(board), 0.0002);
 }

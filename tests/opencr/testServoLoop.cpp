@@ -15,7 +15,7 @@ namespace
 class LineClock : public vpServoClock
 {
 public:
-  explicit LineClock(vpEmulatedTransport &line) : m_line(line) {}
+  explicit LineClock(vpEmulatedTransport &line) : m_line(line), m_due(line.now()) {}
   double period() const override { return 0.02; }
   double now() override { return m_line.now(); }
   double next() override
@@ -30,7 +30,7 @@ public:
 
 private:
   vpEmulatedTransport &m_line;
-  double m_due = 0; // s
+  double m_due; // s
   size_t m_missed = 0;
 };
 

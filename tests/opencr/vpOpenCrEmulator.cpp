@@ -12,10 +12,15 @@ namespace
 {
 using Table = vpOpenCrTable;
 
-constexpr double tickTime = 0.01;    // s, of the firmware's control loop
+constexpr double tickTime = 0.02;    // s, of the firmware's control loop and its measurements
 constexpr double watchdogTime = 0.5; // s
 constexpr double answerTime = 2e-4;  // s that the firmware takes for a request
-constexpr double largestV = 0.2108, largestW = 2.635;
+
+//! The speed of a motor that the firmware derives its limits from.
+double motorSpeed(bool waffle)
+{
+  return (waffle ? 77 : 61) * 2 * M_PI / 60; // rad/s
+}
 
 //! The items that the host may write.
 constexpr std::array<std::pair<std::uint16_t, std::uint16_t>, 11> writable = {{{19, 1},
@@ -79,10 +84,11 @@ void vpOpenCrEmulator::advance(double time)
     m_robot.advance(std::max(due, m_robot.time()));
     if (due >= m_blockedUntil) {
       tick();
+      measure();
     }
   }
   m_robot.advance(std::max(time, m_robot.time()));
-  if (time >= m_blockedUntil) {
+  if (m_settings.measuresAlways && time >= m_blockedUntil) {
     measure();
   }
 }
@@ -102,6 +108,8 @@ void vpOpenCrEmulator::tick()
   if (!m_alive && m_table.get(Table::debugMode) == 0) {
     m_goalV = m_goalW = 0;
   }
+  const double largestV = m_geometry.wheelRadius * motorSpeed(m_table.get(Table::modelInfo) == Table::waffle);
+  const double largestW = largestV / (m_geometry.wheelSeparation / 2);
   const bool torque = m_table.get(Table::torqueEnable) != 0;
   const vpWheels goals = m_geometry.wheelSpeeds(
       {std::clamp(m_goalV, -largestV, largestV), std::clamp(m_goalW, -largestW, largestW)});

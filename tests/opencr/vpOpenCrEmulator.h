@@ -29,6 +29,7 @@ public:
     std::int32_t firstTicks = 0;      // of both wheels' positions
     float gyroBias = 0;               // rad/s
     double calibrationTime = 2;       // s that imu_recalibrate blocks the board
+    bool measuresAlways = false;      // else every 20 ms, as the firmware does
     bool reportsCrcErrors = false;    // answers a corrupted request with error 3 instead of nothing
   };
 

@@ -106,7 +106,7 @@ TEST_F(UsbTransport, DrivesTheBase)
     const auto base = vpOpenTurtleBot3("opencr:usb:FF12");
     vpOdometryWay way = vpDriveInRealTime(*base, {0.2, 0}, 1.5);
     base->stop();
-    EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.2 / 0.001) + 0.011);
+    EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.2 / 0.001) + 0.021);
     way.add(base->odometry());
     EXPECT_GT(way.metres, 0.15);
     EXPECT_NEAR(way.metres, vpWayOf(board), 0.0002);
@@ -128,7 +128,7 @@ TEST_F(UsbTransport, LosesNoTickOnABadLine)
   EXPECT_GT(base->statistics().timeouts + base->statistics().crcErrors, 0u);
   board.setFaults({});
   base->stop();
-  EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.1 / 0.001) + 0.011);
+  EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.1 / 0.001) + 0.021);
   way.add(base->odometry());
   EXPECT_NEAR(way.metres, vpWayOf(board), 0.0002);
 }

@@ -70,7 +70,7 @@ std::string meaning(std::uint8_t error)
 
 vpDynamixelBus::vpDynamixelBus(std::unique_ptr<vpByteTransport> transport) : m_transport(std::move(transport))
 {
-  m_doubtFrom = m_doubtUntil = -std::numeric_limits<double>::infinity();
+  m_doubtUntil = -std::numeric_limits<double>::infinity();
 }
 
 vpDynamixelBus::Identity vpDynamixelBus::ping(std::uint8_t id, double deadline)
@@ -160,8 +160,7 @@ vpDynamixelBus::Outcome vpDynamixelBus::attempt(const std::vector<std::uint8_t> 
   }
   switch (outcome) {
   case Outcome::answered:
-    m_answeredUntil = now();
-    m_answeredFrom = doubtful() ? std::max(m_doubtFrom, m_answeredUntil - lateAnswerTime) : sent;
+    m_answered = now();
     m_statistics.alert |= (answer.error & 0x80) != 0;
     break;
   case Outcome::corrupted: // this attempt's answer, unless that of another one may have come before it
@@ -170,7 +169,6 @@ vpDynamixelBus::Outcome vpDynamixelBus::attempt(const std::vector<std::uint8_t> 
     break;
   case Outcome::silent:
     ++m_statistics.timeouts;
-    m_doubtFrom = doubtful() ? m_doubtFrom : sent;
     m_doubtUntil = sent + lateAnswerTime;
     break;
   }

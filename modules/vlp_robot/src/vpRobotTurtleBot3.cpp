@@ -19,10 +19,10 @@ using Table = vpOpenCrTable;
 
 constexpr double openingTime = 1;           // s, for each step of it
 constexpr double calibrationTime = 6;       // s; the board takes up to 5
+constexpr double datingTime = 0.06;         // s, three times that in which the board measures anew
 constexpr double longestGyroInterval = 0.1; // s; over longer ones two readings of a rate say too little
 constexpr double speedMargin = 5;           // times the top speed that a hand may push the wheels to
 constexpr double tickMargin = 10;
-constexpr double largestDoubt = 0.01; // s, about the time of a reading
 constexpr int mostContradictions = 3; // more is no chance of a wrong CRC, 1 in 65536 corrupted answers
 constexpr double largestGyro = 40;    // rad/s; the sensor ends at 35
 
@@ -79,14 +79,23 @@ void vpRobotTurtleBot3::begin()
   identify();
   prepareMotors();
   m_clockOffset = m_settings.clock ? m_settings.clock() - now() : 0;
-  m_clock.reset();
-  const double deadline = now() + openingTime;
-  do { // until one is dated; from then on the clock dates those of which an answer was late, too
-    m_bus.settle();
-    m_last = readingOf(readTable(deadline));
-  } while (m_clock.uncertainty() > largestDoubt && now() < deadline);
+  dateBoard();
+  m_last = readingOf(readTable(now() + openingTime));
   m_odometry = {m_last.time + m_clockOffset, 0, 0};
   m_connected = true;
+}
+
+//! Asks for the board's counter again and again, until one was noted just before it was read.
+void vpRobotTurtleBot3::dateBoard()
+{
+  m_bus.settle();
+  m_clock.reset();
+  const double deadline = now() + openingTime;
+  for (const double end = now() + datingTime; now() < end;) {
+    const vpControlBlock note(Table::millis.address,
+                              m_bus.read(Table::id, Table::millis.address, Table::millis.length, deadline));
+    m_clock.hostTime(note.get(Table::millis), m_bus.answered());
+  }
 }
 
 void vpRobotTurtleBot3::identify()
@@ -177,9 +186,9 @@ void vpRobotTurtleBot3::stop()
 vpOdometry vpRobotTurtleBot3::odometry()
 {
   requireConnection();
-  if (now() - m_last.time >= m_settings.odometryPeriod) {
+  if (now() - m_sampled >= m_settings.odometryPeriod) {
     guarded([this] {
-      std::string problem = m_bus.name() + ": its answers come too late to be dated";
+      std::string problem = m_bus.name() + ": the board measures nothing new";
       try {
         sample(now() + m_settings.odometryDeadline);
       } catch (const vpException &error) {
@@ -323,7 +332,8 @@ bool vpRobotTurtleBot3::plausible(const vpControlBlock &table) const
 vpRobotTurtleBot3::Reading vpRobotTurtleBot3::readingOf(const vpControlBlock &table)
 {
   Reading reading;
-  reading.time = m_clock.hostTime(table.get(Table::millis), m_bus.answeredFrom(), m_bus.answeredUntil());
+  reading.millis = table.get(Table::millis);
+  reading.time = m_clock.hostTime(reading.millis, m_bus.answered());
   reading.left = table.get(Table::positionLeft);
   reading.right = table.get(Table::positionRight);
   reading.gyro = table.get(Table::gyroZ);
@@ -333,8 +343,9 @@ vpRobotTurtleBot3::Reading vpRobotTurtleBot3::readingOf(const vpControlBlock &ta
 void vpRobotTurtleBot3::sample(double deadline)
 {
   const Reading reading = readingOf(readCurrentTable(deadline));
-  if (reading.time > m_last.time &&
-      m_clock.uncertainty() <= largestDoubt) { // not an older one that came late
+  m_sampled = m_bus.answered();
+  if (reading.millis != m_last.millis &&
+      reading.time > m_last.time) { // else the board has measured nothing since
     const vpBaseVelocity mean = meanVelocity(m_last, reading);
     m_odometry = {reading.time + m_clockOffset, mean.v, mean.w};
     m_last = reading;

@@ -65,12 +65,8 @@ public:
   //! Waits until it is not, for lateAnswerTime at most. \throw vpException (ioError) where the line is gone.
   void settle();
 
-  /*!
-    s, of now(): the device took the last request that it answered after answeredFrom() and before
-    answeredUntil(). Where doubtful() was true that may be any of the requests given up.
-  */
-  double answeredFrom() const { return m_answeredFrom; }
-  double answeredUntil() const { return m_answeredUntil; }
+  //! s, of now(), when the last answer was there.
+  double answered() const { return m_answered; }
 
   //! Opens the line anew. \throw vpException (ioError).
   void reopen();
@@ -91,9 +87,8 @@ private:
   std::unique_ptr<vpByteTransport> m_transport;
   vpDynamixelParser m_parser;
   vpDynamixelStatistics m_statistics;
-  double m_doubtFrom = 0,
-         m_doubtUntil = 0; // s: requests given up were sent from then on, may be answered till
-  double m_answeredFrom = 0, m_answeredUntil = 0; // s
+  double m_doubtUntil = 0; // s, till when an answer to a request given up may come
+  double m_answered = 0;   // s
 };
 
 END_VISP_NAMESPACE

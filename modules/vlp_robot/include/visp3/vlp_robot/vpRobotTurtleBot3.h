@@ -32,7 +32,7 @@ struct VISP_EXPORT vpRobotTurtleBot3Settings {
   double commandDeadline = 0.2;  // s, for all transactions of one command together
   double stopDeadline = 0.3;     // s, for a stop, also for the one after a failure
   double odometryDeadline = 0.1; // s, for a new sample
-  double odometryPeriod = 0.01;  // s: a sample that is younger is given again
+  double odometryPeriod = 0.01;  // s after a reading, in which the board is not asked again
   double odometryAge = 0.25;     // s: where no new sample comes, the last one is given until it is this old
 
   //! \throw vpException (badValue) with one line: the field, what came and what was expected.
@@ -118,6 +118,7 @@ public:
 private:
   //! The wheels' position and the gyro at one time.
   struct Reading {
+    std::uint32_t millis = 0;         // of the board
     double time = 0;                  // s, on the clock of the transport
     std::int32_t left = 0, right = 0; // ticks, wrap
     double gyro = 0;                  // rad/s about z
@@ -125,6 +126,7 @@ private:
 
   void begin();
   void identify();
+  void dateBoard();
   void prepareMotors();
   void requireConnection() const;
   void guarded(const std::function<void()> &act);
@@ -158,6 +160,7 @@ private:
 
   vpBoardClock m_clock;
   Reading m_last;
+  double m_sampled = 0; // s, when the board was asked for odometry
   vpOdometry m_odometry;
 };
 
