@@ -18,6 +18,7 @@
 #include <visp3/core/vpException.h>
 
 #include "opencr/vpEmulatedTurtleBot3.h"
+#include "opencr/vpStandstill.h"
 
 namespace
 {
@@ -149,16 +150,6 @@ struct DriveResult {
   std::vector<double> periodTimes;    // s, of setVelocity() and odometry() together
 };
 
-//! s after \e time until the robot stood for good.
-double standstillAfter(const vpSimulatorTurtleBot3 &robot, double time)
-{
-  double last = time;
-  for (double t = time; t <= robot.time(); t += 1e-3) {
-    last = std::abs(robot.twist(t).v) > 1e-3 ? t : last;
-  }
-  return last - time;
-}
-
 void liveOfDriver(double corrupted, bool others, std::uint64_t seed, DriveResult &result)
 {
   vpSimulatorTurtleBot3Settings world;
@@ -195,7 +186,7 @@ void liveOfDriver(double corrupted, bool others, std::uint64_t seed, DriveResult
       ++result.errors;
       result.errorTimes.push_back(emulated.line->now() - begin);
       emulated.line->advance(emulated.line->now() + 1);
-      result.standstills.push_back(standstillAfter(emulated.robot, begin));
+      result.standstills.push_back(vpStandstillAfter(emulated.robot, begin));
     }
     result.driven += emulated.line->now() - begin;
     ++result.periods;
@@ -269,7 +260,7 @@ double standstillOf(const Fault &fault, std::uint64_t seed)
   }
   emulated.line = nullptr; // perhaps gone with its driver
   emulated.board.advance(time + 3);
-  return standstillAfter(emulated.robot, time);
+  return vpStandstillAfter(emulated.robot, time);
 }
 
 void printFaults()

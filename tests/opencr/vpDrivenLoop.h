@@ -14,6 +14,7 @@
 #include <visp3/vlp_robot/vpRobotTurtleBot3.h>
 
 #include "opencr/vpRealTimeBoard.h"
+#include "opencr/vpStandstill.h"
 
 //! A control loop's period at 50 Hz.
 inline void vpWaitPeriod()
@@ -71,20 +72,12 @@ inline bool vpWaitUntilItDrives(vpRealTimeBoard &board, double speed)
   return false;
 }
 
-/*!
-  Lets 2 s pass. \return s from \e time, of the robot, until it was slower than 1 mm/s for good. In the
-  robot's time: how late the machine is does not count.
-*/
+//! Lets 1.2 s pass. \return vpStandstillAfter(), in the robot's time: how late the machine is does not count.
 inline double vpStandstillAfter(vpRealTimeBoard &board, double time)
 {
-  std::this_thread::sleep_for(std::chrono::duration<double>(std::max(time + 2 - vpTimeOf(board), 0.0)));
-  return board.with([time](vpSimulatorTurtleBot3 &robot, vpOpenCrEmulator &) {
-    double last = time;
-    for (double t = time; t <= robot.time(); t += 1e-3) {
-      last = std::abs(robot.twist(t).v) > 1e-3 ? t : last;
-    }
-    return last - time;
-  });
+  std::this_thread::sleep_for(std::chrono::duration<double>(std::max(time + 1.2 - vpTimeOf(board), 0.0)));
+  return board.with(
+      [time](vpSimulatorTurtleBot3 &robot, vpOpenCrEmulator &) { return vpStandstillAfter(robot, time); });
 }
 
 //! The way that the robot's wheels rolled, m.

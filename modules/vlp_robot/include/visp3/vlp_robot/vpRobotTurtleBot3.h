@@ -67,7 +67,8 @@ struct VISP_EXPORT vpTurtleBot3Status {
   Odometry. v is from the wheels' encoders; w from the gyro (the mean of its readings at both ends of the
   interval, where that is 0.1 s or less) or from the wheels. Time stamps are the board's, put on the host's
   clock. A reading counts only if its CRC is right, the board in it holds the command that was confirmed, and
-  the wheels in it have turned no further than five times their top speed allows.
+  the wheels in it have turned no further than five times their top speed allows. The board measures every
+  20 ms; who asks more often gets the same sample again.
 
   Errors. After an ioError the base was told to stop as far as it could be told, and takes no command until
   reconnect() has worked; stop() always tries. The heartbeat rests meanwhile. Where a bus is so bad that a
@@ -77,6 +78,7 @@ struct VISP_EXPORT vpTurtleBot3Status {
 
   \code
   const auto base = vpOpenTurtleBot3("opencr:usb");
+  base->setVelocity(0.1, 0); // and again within half a second, else it stands
   \endcode
 */
 class VISP_EXPORT vpRobotTurtleBot3 : public vpMobileBase
@@ -94,7 +96,7 @@ public:
   vpBaseVelocity setVelocity(double v, double w) override;
   //! Within stopDeadline. Tries also where the connection was given up.
   void stop() override;
-  //! Within odometryDeadline.
+  //! Within odometryDeadline, and stopDeadline where it throws.
   vpOdometry odometry() override;
   vpBaseLimits limits() const override { return m_geometry.limits(); }
 
