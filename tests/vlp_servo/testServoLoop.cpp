@@ -145,6 +145,18 @@ TEST(ServoLoop, CommandsKeepTheirLimitsThroughAllOfIt)
   }
 }
 
+TEST(ServoLoop, BaseThatDoesNotMoveEndsTheRun)
+{
+  for (const double length : {1.0, 0.1}) { // far off, and never at the end
+    const vpPath path = vpPath::polyline({{0, 0}, {length, 0}});
+    vpPerfectBase base;
+    base.scale = 0;
+    const vpServoRun run = vpServoLoop(base, base, base, path, {}).run();
+    EXPECT_EQ(run.end, vpServoRun::End::failed);
+    EXPECT_NE(run.reason.find("does not follow"), std::string::npos) << run.reason;
+  }
+}
+
 TEST(ServoLoop, TrackErrorsAreOfTheTruth)
 {
   vpPerfectBase base;
