@@ -90,7 +90,16 @@ TEST(VlpServo, ComparisonsCloseNoLoopOverLamps)
     off.push_back(std::abs(end[1][3]));
   }
   EXPECT_LT(off[0], 0.003);
-  EXPECT_GT(off[2], 0.02); // wheels of unlike size lead it astray
+  vpProcess evaluate("vlp-evaluate",
+                     {"--runs", folder / "run0", folder / "run2", "--out", folder / "report"});
+  EXPECT_EQ(evaluate.wait(), 0) << evaluate.err();
+  for (const std::string word : {"run0, true", "run0, as it believed", "run2, true"}) {
+    EXPECT_NE(evaluate.out().find(word), std::string::npos) << evaluate.out();
+  }
+  EXPECT_TRUE(fs::exists(folder / "report/report.html"));
+  EXPECT_TRUE(fs::exists(folder / "report/tracks-1.png"));
+  EXPECT_FALSE(fs::exists(folder / "report/tracks-2.png")); // both drove the same path
+  EXPECT_GT(off[2], 0.02);                                  // wheels of unlike size lead it astray
 }
 
 TEST(VlpServo, InterruptAndTerminateStopTheRobot)
@@ -148,10 +157,10 @@ TEST(VlpServo, HelpNamesEveryOptionAndFile)
   EXPECT_EQ(program.err(), "");
   const std::string help = program.out();
   for (const std::string word :
-       {"--robot",     "--scenario",      "--seed",    "--rig",     "--lamps",    "--camera",
-        "--path",      "--speed",         "--gain",    "--laps",    "--start",    "--fence",
-        "--open-loop", "--odometry-only", "--log",     "--display", "--headless", "--real-time",
-        "Example",     "commands.csv",    "poses.tum", "truth.tum", "Exit code"}) {
+       {"--robot",       "--scenario",      "--seed",       "--rig",     "--lamps",    "--camera",
+        "--path",        "--speed",         "--gain",       "--laps",    "--start",    "--fence",
+        "--open-loop",   "--odometry-only", "--log",        "--display", "--headless", "--real-time",
+        "--wheels-only", "Example",         "commands.csv", "poses.tum", "truth.tum",  "Exit code"}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
 }
