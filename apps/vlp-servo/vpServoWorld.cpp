@@ -16,6 +16,9 @@ vpScenario scenarioOf(const vpVlpServoOptions &options)
   if (options.typical) {
     scenario.useTypicalRig();
   }
+  if (options.wheelsOnly) {
+    scenario.motion.robot.turnSource = vpSimulatorTurtleBot3Settings::TurnSource::wheels;
+  }
   return scenario;
 }
 

@@ -115,6 +115,8 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   vpAddName(app, "--scenario", scenario, "FILE", "sim: the world, see data/scenarios/servo.yaml");
   app.add_option("--seed", seed, "sim: of all that is left to chance (default 1)")->type_name("N");
   app.add_flag("--typical", typical, "sim: draw the errors of a typical rig, unknown to the robot");
+  app.add_flag("--wheels-only", wheelsOnly,
+               "sim: the odometry's turns from the wheels, whatever the scenario says");
   app.add_flag("--real-time", realTime,
                "sim: as fast as the world really goes, camera in a thread of its own");
   vpAddName(app, "--latency", delay, "S", "sim: of the localizer after a picture's readout (default 0.02 s)");
@@ -178,8 +180,8 @@ void vpVlpServoOptions::check() const
   if (sim && !camera.empty()) {
     fail("--camera: " + vpShown(camera) + " beside --robot sim, whose camera is the scenario's");
   }
-  if (!sim && (!scenario.empty() || typical || realTime)) {
-    fail("--scenario, --typical, --real-time: beside --robot " + vpShown(robot) +
+  if (!sim && (!scenario.empty() || typical || wheelsOnly || realTime)) {
+    fail("--scenario, --typical, --wheels-only, --real-time: beside --robot " + vpShown(robot) +
          ", expected them with sim only");
   }
   if (!sim && pose == Pose::lamps && (rigFile.empty() || lampsFile.empty() || camera.empty())) {

@@ -21,9 +21,10 @@ struct vpVlpServoOptions {
   std::string robot;    // sim, opencr:usb, opencr:DEVICE
   std::string scenario; // of sim, a file
   std::uint64_t seed = 1;
-  bool typical = false;  // rig errors as vpScenario::useTypicalRig() draws them
-  bool realTime = false; // sim on the host's clock
-  double latency = 0.02; // s, of sim's localizer
+  bool typical = false;    // rig errors as vpScenario::useTypicalRig() draws them
+  bool wheelsOnly = false; // the turn rate of sim's odometry is that of the wheels
+  bool realTime = false;   // sim on the host's clock
+  double latency = 0.02;   // s, of sim's localizer
   std::string rigFile;
   std::string lampsFile;
   std::string camera; // a URI

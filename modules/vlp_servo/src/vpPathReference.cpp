@@ -128,7 +128,8 @@ const vpReference &vpPathReference::advance(double dt, double share)
   }
   const double stop = nextStop();
   const double wanted =
-      std::min(share * braked(m_now.s, m_now.v), stoppable(stop - m_now.s, m_settings.acceleration, dt));
+      std::min(share * braked(m_now.s + m_now.v * dt, m_now.v), // as of the end of this period
+               stoppable(stop - m_now.s, m_settings.acceleration, dt));
   m_now.v = std::clamp(wanted, std::max(0.0, m_now.v - m_settings.braking * dt),
                        m_now.v + m_settings.acceleration * dt);
   m_now.s = std::min(m_now.s + m_now.v * dt, stop);

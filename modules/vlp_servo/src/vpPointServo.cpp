@@ -113,8 +113,12 @@ void vpPointServo::integrate(double speed, double dt)
   const double rate =
       m_settings.gain * m_settings.integralGain * dt / std::max(speed, crawl) * std::min(1.0, speed / crawl);
   const Eigen::Vector2d most(m_settings.mostSpeedScale, m_settings.mostCurvature);
-  m_integral += rate * Eigen::Vector2d(m_error.x(), m_error.y() / m_settings.lookAhead);
-  m_integral = m_integral.cwiseMax(-most).cwiseMin(most);
+  const Eigen::Vector2d error(m_error.x(), m_error.y() / m_settings.lookAhead);
+  // More than the largest disturbance would leave is not its doing: the base was put there, or pushed.
+  if ((m_settings.gain * error.cwiseAbs().array() > speed * most.array()).any()) {
+    return;
+  }
+  m_integral = (m_integral + rate * error).cwiseMax(-most).cwiseMin(most);
 }
 
 END_VISP_NAMESPACE

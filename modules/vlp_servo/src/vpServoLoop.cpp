@@ -96,6 +96,9 @@ vpServoStep vpServoLoop::step(double now)
   const vpVlpFix fix = m_poses.at(now + m_settings.actuationDelay);
   const vpServoPermit permit = m_safety.permit(now, fix);
   step.wanted = m_follower.follow(fix.wMb, permit.share, m_clock.period());
+  if (permit.share > 0) {
+    m_safety.setOffset(now, m_follower.servo().error().norm(), m_follower.atEnd());
+  }
   const vpBaseVelocity command = m_safety.limited(step.wanted, m_clock.period());
   step.told = m_base.setVelocity(command.v, command.w);
   m_poses.addCommand(now, step.told);

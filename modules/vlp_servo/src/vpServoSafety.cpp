@@ -83,6 +83,14 @@ void vpServoSafety::fail(const std::string &reason)
   m_failure = m_failure.empty() ? reason : m_failure;
 }
 
+void vpServoSafety::setOffset(double now, double offset, bool atEnd)
+{
+  m_endBegan = atEnd ? std::make_optional(m_endBegan.value_or(now)) : std::nullopt;
+  if (offset > m_settings.farthest || (m_endBegan && now - *m_endBegan > m_settings.giveUp)) {
+    fail("the base does not follow: it is " + millimetres(offset) + " off its reference");
+  }
+}
+
 //! Why the base had better stand for now, or empty.
 std::string vpServoSafety::unsafe(double now, const vpVlpFix &fix) const
 {

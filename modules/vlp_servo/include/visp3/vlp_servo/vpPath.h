@@ -83,7 +83,8 @@ public:
   //! s of the corners within the path, rising. That at the end of a closed one, if it is one, is length().
   const std::vector<double> &corners() const { return m_corners; }
 
-  //! s of the place closest to \e place, from \e from to \e to (m; beyond a lap where the path is closed).
+  //! s, to 1e-7 m, of the place closest to \e place, from \e from to \e to (m; beyond a lap where the path is
+  //! closed).
   double closest(const Eigen::Vector2d &place, double from, double to) const;
   double closest(const Eigen::Vector2d &place) const { return closest(place, 0, length()); }
 

@@ -49,6 +49,8 @@ public:
   const vpReference &reference() const { return m_reference.now(); }
   const vpPointServo &servo() const { return m_servo; }
   bool arrived() const { return m_arrived; }
+  //! The reference is at the end of the path, whether the base is or not.
+  bool atEnd() const { return m_reference.arrived(); }
   double end() const { return m_reference.end(); } // m, s of the end
 
 private:

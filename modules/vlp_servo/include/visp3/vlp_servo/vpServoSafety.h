@@ -26,6 +26,7 @@ struct VISP_EXPORT vpServoSafetySettings {
   int confirmations = 3;        // pictures in a row with a tracked pose, before it moves, and after each wait
   double pictureTimeout = 0.5;  // s without a picture, after which it stands
   double giveUp = 20;           // s of waiting, after which the run ends
+  double farthest = 0.5;        // m off the reference, beyond which the run ends: the base does not follow
   double batteryLow = 11;       // V, of the TurtleBot3's three cells, below which the run ends
   double reaction = 0.1;        // s, from a command to the base's doing it, by which the fence is kept from
   std::optional<Eigen::AlignedBox2d> fence; // m, in w: where the base's origin has to stay
@@ -48,7 +49,8 @@ struct VISP_EXPORT vpServoPermit {
   pictures stay away for long, the base brakes to a stand and waits; once as many pictures as at the start
   have a tracked pose whose covariance is below the lower limits, it goes on. Between pictures, and through
   pictures without lamps, it may drive on odometry as long as the covariance allows. Leaving the fence, a low
-  battery, a camera that is gone, a command that is no number, and a wait that is too long end the run.
+  battery, a camera that is gone, a base that does not follow, a command that is no number, and a wait that is
+  too long end the run.
 */
 class VISP_EXPORT vpServoSafety
 {
@@ -61,6 +63,10 @@ public:
 
   //! The pose \e fix is that of \e now (s) or a little later.
   vpServoPermit permit(double now, const vpVlpFix &fix);
+
+  //! How far (m) the base is off its reference, and whether that waits for it at the end of the path. A base
+  //! that is too far off, or keeps it waiting for too long, does not follow: that ends the run.
+  void setOffset(double now, double offset, bool atEnd);
 
   //! V; what the base says of it.
   void setBattery(double voltage) { m_battery = voltage; }
@@ -86,6 +92,7 @@ private:
   int m_confirmed = 0;                              // pictures in a row
   bool m_moving = false;                            // permitted to
   std::optional<double> m_lastPicture, m_waitBegan; // s
+  std::optional<double> m_endBegan;                 // s, when the reference was at the end
   std::optional<double> m_battery;                  // V
   std::string m_failure;                            // for good
 };
