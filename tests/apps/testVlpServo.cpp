@@ -119,7 +119,8 @@ TEST(VlpServo, FenceEndsTheRunWithItsReason)
   EXPECT_EQ(program.wait(), 3);
   EXPECT_NE(program.err().find("the robot stands: the base is about to leave the fence"), std::string::npos)
       << program.err();
-  for (const vpTimedPose &pose : vpServoLog::load(folder / "run").truth.poses()) {
+  const vpServoLog log = vpServoLog::load(folder / "run");
+  for (const vpTimedPose &pose : log.truth.poses()) {
     EXPECT_LT(pose.wMb[0][3], 0.06);
   }
 }
