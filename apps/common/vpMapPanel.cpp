@@ -213,6 +213,9 @@ void vpMapPanel::follow()
       needed.extend(place);
     }
   }
+  for (const Eigen::Vector2d &place : m_path) {
+    needed.extend(place);
+  }
   needed = readable(needed);
   const double size = needed.sizes().maxCoeff();
   const Box wanted = widened(needed, std::max(0.12 * size, 0.6 * m_reach));

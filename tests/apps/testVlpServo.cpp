@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -119,8 +120,23 @@ TEST(VlpServo, FenceEndsTheRunWithItsReason)
   EXPECT_EQ(program.wait(), 3);
   EXPECT_NE(program.err().find("the robot stands: the base is about to leave the fence"), std::string::npos)
       << program.err();
-  for (const vpTimedPose &pose : vpServoLog::load(folder / "run").truth.poses()) {
+  const vpServoLog log = vpServoLog::load(folder / "run");
+  for (const vpTimedPose &pose : log.truth.poses()) {
     EXPECT_LT(pose.wMb[0][3], 0.06);
+  }
+}
+
+TEST(VlpServo, WithoutAScreenItDrivesAllTheSame)
+{
+  const vpTemporaryFolder folder;
+  const char *const kept = std::getenv("DISPLAY");
+  const std::string before = kept == nullptr ? "" : kept;
+  unsetenv("DISPLAY");
+  vpProcess program("vlp-servo", with(briefDrive(folder), {"--display"}));
+  EXPECT_EQ(program.wait(), 0) << program.err();
+  EXPECT_EQ(program.err().rfind("vlp-servo: warning: --display: ", 0), 0u) << program.err();
+  if (kept != nullptr) {
+    setenv("DISPLAY", before.c_str(), 1);
   }
 }
 
