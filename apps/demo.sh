@@ -1,22 +1,28 @@
 #!/usr/bin/env bash
-# From a fresh machine to a robot's positions: installs what is missing, builds Release, simulates the paper's run A under
-# four blinking lamps, locates the robot in each frame, holds it against the truth and shows the report. May be run any
-# number of times.
+# From a fresh machine to the main job: installs what is missing, builds Release, and lets the simulated TurtleBot under the
+# paper's four lamps drive the paper's lines and a square, once on what it sees and once on odometry alone; shows how far off
+# each was, and where it went. May be run any number of times.
 set -euo pipefail
 export LC_ALL=C
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scenario=data/scenarios/paper-a.yaml
+scenario=data/scenarios/servo.yaml
 out=build/demo
 
 main_job()
 {
-  local bin=build/release/bin
-  "$bin/vlp-simulate" --scenario "$scenario" --every 6 --out "$out/run"
-  "$bin/vlp-locate" --run "$out/run" --poses "$out/poses.tum" --fixes "$out/fixes.csv" --seen "$out/seen.csv" \
-    --overlay "$out/overlay"
-  "$bin/vlp-evaluate" --truth "$out/run/truth.tum" --fixes "$out/fixes.csv" --out "$out/report" \
-    --title "Run A of the paper, simulated"
+  local bin=build/release/bin path runs=()
+  for path in line-a line-b square; do
+    echo "$path, on the lamps"
+    "$bin/vlp-servo" --robot sim --scenario "$scenario" --path "data/paths/$path.yaml" --speed 0.1 \
+      --log "$out/$path-lamps" >"$out/$path-lamps.txt"
+    echo "$path, on odometry alone"
+    "$bin/vlp-servo" --robot sim --scenario "$scenario" --wheels-only --odometry-only --path "data/paths/$path.yaml" \
+      --speed 0.1 --log "$out/$path-odometry" >"$out/$path-odometry.txt"
+    runs+=("$out/$path-lamps" "$out/$path-odometry")
+  done
+  "$bin/vlp-evaluate" --runs "${runs[@]}" --out "$out/report" \
+    --title "The paper's lines and a square, on the lamps and on odometry alone"
 }
 
 show() # FILE, where there is a screen and a program for it
@@ -41,8 +47,6 @@ cmake --build --preset release "${quiet[@]}"
 
 main_job
 echo
-echo "The report, with its figures:    $out/report/report.html"
-echo "What was seen in each frame:     $out/overlay/*.png"
-echo "Frames and truth:                $out/run"
-echo "Poses (TUM), fixes, lamps (CSV): $out"
+echo "The report, with its figures:       $out/report/report.html"
+echo "Each run's tracks, poses, commands: $out/*-lamps, $out/*-odometry"
 show "$out/report/report.html"

@@ -149,6 +149,21 @@ vpMapPanel::vpMapPanel(const vpLampMap &map) : m_map(map)
   m_view = widened(all, 0.12 * all.sizes().maxCoeff());
 }
 
+void vpMapPanel::setPath(const std::vector<Eigen::Vector2d> &places)
+{
+  m_path = places;
+  Box all = m_view;
+  for (const Eigen::Vector2d &place : places) {
+    all.extend(place);
+  }
+  m_view = m_view.contains(all) ? m_view : widened(all, 0.12 * all.sizes().maxCoeff());
+}
+
+void vpMapPanel::setTruth(const std::optional<vpHomogeneousMatrix> &wMb)
+{
+  m_truth = wMb ? std::make_optional(Eigen::Vector2d((*wMb)[0][3], (*wMb)[1][3])) : std::nullopt;
+}
+
 void vpMapPanel::add(const vpVlpLocation &location)
 {
   m_seen.clear();
@@ -198,6 +213,9 @@ void vpMapPanel::follow()
       needed.extend(place);
     }
   }
+  for (const Eigen::Vector2d &place : m_path) {
+    needed.extend(place);
+  }
   needed = readable(needed);
   const double size = needed.sizes().maxCoeff();
   const Box wanted = widened(needed, std::max(0.12 * size, 0.6 * m_reach));
@@ -227,8 +245,10 @@ cv::Mat vpMapPanel::draw(cv::Size size, double unit) const
   map.drawGrid();
   const std::vector<size_t> lamps = shown(map);
   drawLamps(map, lamps);
+  drawPath(map);
   drawTrail(map);
   drawRobot(map);
+  drawTruth(map);
   drawLabels(map, lamps);
   map.picture.copyTo(panel(cv::Rect(cv::Point(), map.picture.size())));
   drawLegend(panel, map.picture.rows, unit);
@@ -275,6 +295,24 @@ void vpMapPanel::drawLabels(vpMapSheet &sheet, const std::vector<size_t> &lamps)
     }
     sheet.drawLabel(m_map.lamps[i].id.substr(0, longest), outline(m_map.lamps[i], sheet, lamps.size()),
                     rank(i) == 2 ? vpVlpColours::grey : vpVlpColours::white);
+  }
+}
+
+void vpMapPanel::drawPath(vpMapSheet &sheet) const
+{
+  if (!m_path.empty()) {
+    sheet.drawLine(m_path, false, vpVlpColours::grey, 1);
+  }
+}
+
+void vpMapPanel::drawTruth(vpMapSheet &sheet) const
+{
+  if (!m_truth) {
+    return;
+  }
+  const double arm = 12 * sheet.unit() / sheet.scale(); // m
+  for (const Eigen::Vector2d &way : {Eigen::Vector2d(arm, 0), Eigen::Vector2d(0, arm)}) {
+    sheet.drawLine({*m_truth - way, *m_truth + way}, false, vpVlpColours::white, 1);
   }
 }
 

@@ -36,6 +36,12 @@ public:
 
   explicit vpMapPanel(const vpLampMap &map);
 
+  //! A path that the robot is to drive, m; what is shown holds all of it.
+  void setPath(const std::vector<Eigen::Vector2d> &places);
+
+  //! Where the robot truly is, in simulation: drawn as a cross.
+  void setTruth(const std::optional<vpHomogeneousMatrix> &wMb);
+
   //! One more frame.
   void add(const vpVlpLocation &location);
 
@@ -70,7 +76,9 @@ private:
   std::vector<size_t> shown(const vpMapSheet &sheet) const;
   void drawLamps(vpMapSheet &sheet, const std::vector<size_t> &lamps) const;
   void drawLabels(vpMapSheet &sheet, const std::vector<size_t> &lamps) const;
+  void drawPath(vpMapSheet &sheet) const;
   void drawTrail(vpMapSheet &sheet) const;
+  void drawTruth(vpMapSheet &sheet) const;
   void drawRobot(vpMapSheet &sheet) const;
 
   vpLampMap m_map;
@@ -82,6 +90,8 @@ private:
   std::optional<Pose> m_pose;
   std::optional<Pose> m_other; // that explains the frame as well
   std::deque<Step> m_trail;
+  std::vector<Eigen::Vector2d> m_path;    // m
+  std::optional<Eigen::Vector2d> m_truth; // m
 };
 
 END_VISP_NAMESPACE

@@ -28,6 +28,9 @@ public:
   */
   cv::Mat draw(const vpImage<unsigned char> &I, const vpVlpLocation &location, double compute);
 
+  //! For what else it shall show.
+  vpMapPanel &map() { return m_panel; }
+
 private:
   vpMapPanel m_panel;
 };

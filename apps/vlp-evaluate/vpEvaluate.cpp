@@ -4,15 +4,11 @@
  */
 #include "vpEvaluate.h"
 
-#include <filesystem>
 #include <iostream>
 #include <optional>
-#include <system_error>
-#include <utility>
 
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
-#include <visp3/vlp_core/vpAtomicFile.h>
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_evaluation/vpEvaluationFigures.h>
 #include <visp3/vlp_evaluation/vpGnuplot.h>
@@ -21,46 +17,13 @@
 
 #include "common/vpInterrupt.h"
 #include "common/vpProgressBar.h"
+#include "vpEvaluateFolder.h"
+#include "vpEvaluateRuns.h"
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-namespace fs = std::filesystem;
-
-//! Files of a folder, made in memory first, so that a failure leaves none of them.
-class OutputFolder
-{
-public:
-  //! Makes the folder where there is none, and tries whether a file can be written there.
-  explicit OutputFolder(std::string folder) : m_folder(std::move(folder))
-  {
-    std::error_code error;
-    fs::create_directories(m_folder, error);
-    if (error) {
-      throw vpException(vpException::ioError, m_folder + ": the folder cannot be made: " + error.message());
-    }
-    const vpAtomicFile probe(path("report.html")); // gone again, since it is not committed
-  }
-
-  void add(const std::string &name, std::string bytes) { m_files.emplace_back(name, std::move(bytes)); }
-
-  void write() const
-  {
-    for (const auto &[name, bytes] : m_files) {
-      vpAtomicFile file(path(name));
-      file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      file.commit();
-    }
-  }
-
-private:
-  std::string path(const std::string &name) const { return (fs::path(m_folder) / name).string(); }
-
-  std::string m_folder;
-  std::vector<std::pair<std::string, std::string>> m_files;
-};
-
 //! Why there is nothing to evaluate, or empty.
 std::string emptiness(const vpEvaluateOptions &options, const vpEvaluation &evaluation)
 {
@@ -105,7 +68,7 @@ std::vector<std::string> sources(const vpEvaluateOptions &options)
   return lines;
 }
 
-void writeReport(const vpEvaluateOptions &options, const vpEvaluation &evaluation, OutputFolder &folder)
+void writeReport(const vpEvaluateOptions &options, const vpEvaluation &evaluation, vpEvaluateFolder &folder)
 {
   const std::vector<vpFigure> figures = vpFiguresOf(evaluation);
   std::vector<vpReportFigure> shown;
@@ -128,6 +91,9 @@ void writeReport(const vpEvaluateOptions &options, const vpEvaluation &evaluatio
 
 vpExitCode vpEvaluate(const vpEvaluateOptions &options)
 {
+  if (!options.runs.empty()) {
+    return vpEvaluateRuns(options);
+  }
   vpInterrupt::install();
   const vpTrajectory truth = vpTrajectory::load(options.truth);
   const std::optional<vpFixLog> log =
@@ -145,7 +111,7 @@ vpExitCode vpEvaluate(const vpEvaluateOptions &options)
     return vpExitCode::done;
   }
   vpGnuplot::check();
-  OutputFolder folder(options.out);
+  vpEvaluateFolder folder(options.out);
   writeReport(options, evaluation, folder);
   print(evaluation);
   spdlog::info(vpOneLine(options.out) + ": report.html, statistics.csv and figures");

@@ -28,10 +28,13 @@ Examples:
   vlp-evaluate --truth truth.tum --estimate poses.tum
   vlp-evaluate --truth truth.tum --fixes fixes.csv --out report --title 'Run A'
   vlp-evaluate --truth truth.tum --estimate poses.tum --line -0.35,0,0.35,-0.005
+  vlp-evaluate --runs line-a line-a-odometry --out report
 
 Inputs:
   truth, estimate  TUM: timestamp tx ty tz qx qy qz qw (s, m), times increasing, # begins a comment
   fixes            as vlp-locate --fixes writes them; only rows whose state is fix count as a position
+  runs             log folders of vlp-servo: how far each was off its path, truly where it is simulated, and
+                   as it believed; runs along the same path are drawn in one map
 Each pose is held against the truth interpolated to its time, never beyond the truth's ends.
 Errors are estimate minus truth. A percentile is linear between the two sorted values around it; 90 %, 95 %
 and max are of magnitudes. The dispersion is that of the horizontal errors: for a robot that stands still
@@ -81,6 +84,8 @@ bool vpEvaluateOptions::parse(int argc, char **argv)
   vpAddName(app, "--fixes", fixes, "FILE", "the same run's fixes: time per fix, consistency");
   vpAddChoice(app, "--align", alignment, {"none", "origin", "se2"},
               "lay the estimate on the truth first: not (default), by the first pose, by least squares");
+  app.add_option("--runs", runs, "instead: set runs of vlp-servo (its log folders) side by side")
+      ->type_name("DIR");
   vpAddName(app, "--line", line, "X1,Y1,X2,Y2",
             "the line (m) that the robot was to drive; default: the truth's, where that is straight");
   vpAddName(app, "--max-gap", gap, "S", "longest gap of the truth to interpolate over (default 1 s)");
@@ -88,6 +93,13 @@ bool vpEvaluateOptions::parse(int argc, char **argv)
   vpAddName(app, "--title", title, "TEXT", "of the report; default: the estimate's name");
   if (!vpParseCommandLine(app, argc, argv)) {
     return false;
+  }
+  if (!runs.empty()) {
+    if (!truth.empty() || !poses().empty() || !line.empty() || !gap.empty() || alignment != "none") {
+      fail("--runs: beside other options, expected with it only --out and --title");
+    }
+    title = title.empty() ? "Runs of vlp-servo" : title;
+    return true;
   }
   if (truth.empty()) {
     fail("--truth: nothing, expected the file of the true poses (--help explains the options)");

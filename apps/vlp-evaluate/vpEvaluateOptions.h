@@ -6,6 +6,7 @@
 #define vpEvaluateOptions_h
 
 #include <string>
+#include <vector>
 
 #include <visp3/vlp_evaluation/vpEvaluation.h>
 
@@ -16,7 +17,8 @@ struct vpEvaluateOptions {
   std::string truth;
   std::string estimate; // this or fixes is given, or both
   std::string fixes;
-  std::string out; // a folder
+  std::vector<std::string> runs; // folders of vlp-servo, instead of the three above
+  std::string out;               // a folder
   std::string title;
   vpEvaluationSettings settings;
 

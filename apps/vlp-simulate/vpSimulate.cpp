@@ -6,12 +6,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <set>
-#include <system_error>
 #include <vector>
-
-#include <unistd.h>
 
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
@@ -21,6 +17,7 @@
 #include <visp3/vlp_simulation/vpSimulation.h>
 
 #include "common/vpInterrupt.h"
+#include "common/vpNewFolder.h"
 #include "common/vpPictureFile.h"
 #include "common/vpProgressBar.h"
 
@@ -28,78 +25,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-namespace fs = std::filesystem;
-
-//! A folder that is filled under another name beside it, and gets its own by commit(); without it, it goes
-//! away.
-class NewFolder
-{
-public:
-  explicit NewFolder(const std::string &name)
-  {
-    std::error_code error;
-    m_name = fs::weakly_canonical(fs::path(name), error); // no name can be given to a link or to "."
-    if (error) {
-      throw vpException(vpException::ioError, name + ": the folder cannot be made: " + error.message());
-    }
-    if (!m_name.has_filename()) { // a/b/
-      m_name = m_name.parent_path();
-    }
-    if (fs::exists(m_name, error) && !(fs::is_directory(m_name, error) && fs::is_empty(m_name, error))) {
-      throw vpException(vpException::ioError, name + ": exists, expected a new or empty folder");
-    }
-    m_written = m_name;
-    m_written += ".part-" + std::to_string(getpid());
-    for (fs::path parent = m_name.parent_path(); !parent.empty() && !fs::exists(parent, error);
-         parent = parent.parent_path()) {
-      m_parents.push_back(parent);
-    }
-    if (!fs::create_directories(m_written, error) && !error) {
-      error = std::make_error_code(std::errc::file_exists); // of a program that was killed
-    }
-    if (error) {
-      removeParents();
-      throw vpException(vpException::ioError, name + ": the folder cannot be made: " + error.message());
-    }
-  }
-
-  ~NewFolder()
-  {
-    if (!m_written.empty()) {
-      std::error_code ignored;
-      fs::remove_all(m_written, ignored);
-      removeParents();
-    }
-  }
-  NewFolder(const NewFolder &) = delete;
-  NewFolder &operator=(const NewFolder &) = delete;
-
-  std::string file(const std::string &name) const { return (m_written / name).string(); }
-
-  void commit()
-  {
-    std::error_code error;
-    fs::rename(m_written, m_name, error); // takes the place of an empty folder
-    if (error) {
-      throw vpException(vpException::ioError,
-                        m_name.string() + ": the folder cannot be made: " + error.message());
-    }
-    m_written.clear();
-  }
-
-private:
-  void removeParents() const
-  {
-    for (const fs::path &parent : m_parents) {
-      std::error_code ignored; // somebody else may have put something there
-      fs::remove(parent, ignored);
-    }
-  }
-
-  fs::path m_name, m_written;
-  std::vector<fs::path> m_parents; // that were made for it, the innermost first
-};
-
 std::string pictureName(size_t index, const std::string &format)
 {
   static const size_t digits = 6;
@@ -122,7 +47,7 @@ vpTrajectory truthOf(vpSimulation &simulation, const std::vector<double> &frameT
   return truth;
 }
 
-void writeBeliefs(const vpSimulation &simulation, const NewFolder &folder)
+void writeBeliefs(const vpSimulation &simulation, const vpNewFolder &folder)
 {
   vpVlpRig rig = simulation.rig();
   rig.cameraFile = "camera.xml"; // beside the rig, wherever the scenario's was
@@ -142,7 +67,7 @@ vpExitCode vpSimulate(const vpSimulateOptions &options)
   const size_t total = options.frames > 0 ? std::min(options.frames, scenario.frames) : scenario.frames;
   scenario.frames = total;
   vpInterrupt::install(); // from here on there is something to take away
-  NewFolder folder(options.out);
+  vpNewFolder folder(options.out);
   vpSimulation simulation(scenario, options.seed);
   vpProgressBar progress(total);
   vpAtomicFile list(folder.file("frames.csv"));

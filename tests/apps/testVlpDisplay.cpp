@@ -285,6 +285,25 @@ TEST(MapPanel, TrailIsBoundedAndInTheColourOfItsStates)
   EXPECT_FALSE(near(15, vpVlpColours::ofState("coasting"))); // forgotten
 }
 
+TEST(MapPanel, PathAndTruthAreDrawnAndStayInView)
+{
+  vpMapPanel panel(room());
+  panel.setPath({{-1.5, 0.5}, {1.5, 0.5}});
+  panel.setTruth(vpPoseOf(Eigen::Vector3d(-0.5, -0.3, 0), Eigen::Vector3d::Zero()));
+  panel.add(tracked(0.3, -0.4, 0.5));
+  const cv::Mat picture = panel.draw(size, 1);
+  for (const double x : {-1.4, 1.4}) {
+    const cv::Mat around =
+        picture(cv::Rect(rounded(panel.pixel({x, 0.5}, size, 1)) - cv::Point(2, 2), cv::Size(5, 5)));
+    EXPECT_GT(cv::countNonZero(pixelsOf(around, vpVlpColours::grey)), 3) << x;
+  }
+  const cv::Mat cross =
+      picture(cv::Rect(rounded(panel.pixel({-0.5, -0.3}, size, 1)) - cv::Point(10, 10), cv::Size(21, 21)));
+  EXPECT_GT(cv::countNonZero(pixelsOf(cross, vpVlpColours::white)), 20);
+  panel.add(tracked(6, 0));
+  EXPECT_TRUE(panel.view().contains(Eigen::Vector2d(-1.5, 0.5)));
+}
+
 TEST(VlpDashboard, PictureStandsUntouchedBesideTheMap)
 {
   const cv::Mat grey = vpLocateScene::picture();

@@ -292,6 +292,28 @@ std::vector<double> vpYamlNode::numbers(const std::string &key, size_t count, Ra
   return values;
 }
 
+std::vector<std::vector<double>> vpYamlNode::numberLists(const std::string &key, size_t count) const
+{
+  const std::string what = "a list of " + std::to_string(count) + " numbers";
+  const YAML::Node &node = m_impl->need(key, "a list, each entry of it " + what);
+  if (!node.IsSequence()) {
+    m_impl->wrong(key, node, "a list, each entry of it " + what);
+  }
+  std::vector<std::vector<double>> lists(node.size(), std::vector<double>(count));
+  for (size_t i = 0; i < node.size(); ++i) {
+    bool good = node[i].IsSequence() && node[i].size() == count;
+    for (size_t k = 0; good && k < count; ++k) {
+      good = readNumber(node[i][k], Range::any, lists[i][k]);
+    }
+    if (!good) {
+      failAt(m_impl->filename, m_impl->lineFor(node[i], key),
+             m_impl->pathOf(key) + "[" + std::to_string(i) + "]: " + described(node[i]) + ", expected " +
+                 what);
+    }
+  }
+  return lists;
+}
+
 unsigned int vpYamlNode::wholeNumber(const std::string &key, unsigned int least) const
 {
   const std::string what = "a whole number of " + std::to_string(least) + " or more";

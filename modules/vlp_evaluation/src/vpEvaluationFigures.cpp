@@ -10,6 +10,7 @@
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_evaluation/vpGnuplot.h>
 
+#include "vpFigureBox.h"
 #include "vpFigureScript.h"
 
 BEGIN_VISP_NAMESPACE
@@ -47,52 +48,11 @@ std::string drawnOf(const vpEvaluation &evaluation)
                       : " Drawn: " + std::to_string(drawn) + " of " + std::to_string(all) + " positions.";
 }
 
-//! The part of the plane that a map shows, m.
-class Box
-{
-public:
-  void hold(const Vector2d &point)
-  {
-    m_low = m_low.cwiseMin(point);
-    m_high = m_high.cwiseMax(point);
-  }
-  Vector2d size() const { return m_high - m_low; }
-  const Vector2d &low() const { return m_low; }
-  const Vector2d &high() const { return m_high; }
-
-  //! Adds a margin, and makes the box at least \e least long and no more than three times as long as wide.
-  void finish(double least)
-  {
-    const Vector2d middle = 0.5 * (m_low + m_high);
-    Vector2d half = (0.54 * size()).cwiseMax(0.5 * least);
-    half = half.cwiseMax(Vector2d(half.y() / 1.2, half.x() / 3));
-    m_low = middle - half;
-    m_high = middle + half;
-  }
-
-  std::string ranges(double scale) const
-  {
-    return "set size ratio -1\n" + range("x", scale * m_low.x(), scale * m_high.x()) +
-           range("y", scale * m_low.y(), scale * m_high.y());
-  }
-
-  //! Height of a figure of that width (px) that the box fills, or that a screen holds: beside it stand the
-  //! axes' labels and legend.
-  int figureHeight(int width) const
-  {
-    constexpr double beside = 100, below = 120, highest = 560; // px
-    return static_cast<int>(std::min(highest, below + (width - beside) * size().y() / size().x()));
-  }
-
-private:
-  Vector2d m_low = Vector2d::Constant(INFINITY), m_high = Vector2d::Constant(-INFINITY);
-};
-
 vpFigure scatter(const vpEvaluation &evaluation)
 {
   const vpDispersion &dispersion = evaluation.dispersion;
   const Unit unit = Unit::ofErrors(evaluation.horizontal.largest);
-  Box box;
+  vpFigureBox box;
   std::string rows, circle;
   for (const vpPosePair *pair : thinned(evaluation.pairs)) {
     rows += row({unit.perMetre * pair->errorX(), unit.perMetre * pair->errorY()});
@@ -167,7 +127,7 @@ std::string truthRows(const vpEvaluation &evaluation, double scale)
 }
 
 //! Ends of the fitted line, as far as the estimate goes.
-std::vector<Vector2d> endsOf(const vpFittedLine &line, const Box &estimate)
+std::vector<Vector2d> endsOf(const vpFittedLine &line, const vpFigureBox &estimate)
 {
   const int axis = line.alongY ? 1 : 0;
   return {line.at(estimate.low()[axis]), line.at(estimate.high()[axis])};
@@ -184,7 +144,7 @@ std::string segment(const std::vector<Vector2d> &ends, double scale)
 
 vpFigure track(const vpEvaluation &evaluation)
 {
-  Box estimate, truth, box; // m
+  vpFigureBox estimate, truth, box; // m
   for (const vpPosePair &pair : evaluation.pairs) {
     estimate.hold(positionOf(pair.estimate));
     box.hold(positionOf(pair.estimate));

@@ -143,37 +143,42 @@ std::string html(const vpReportTable &table)
          "</section>\n";
 }
 
-std::string tile(const std::string &value, const std::string &meaning)
+std::vector<vpReportTile> tilesOf(const vpEvaluation &evaluation)
 {
-  return "<div class=\"tile\"><b>" + escaped(value) + "</b><span>" + escaped(meaning) + "</span></div>\n";
-}
-
-std::string tiles(const vpEvaluation &evaluation)
-{
+  if (evaluation.pairs.empty()) {
+    return {};
+  }
   const auto millimetres = [](double metres) {
     std::array<char, 64> buffer;
     std::snprintf(buffer.data(), buffer.size(), "%.3g mm", 1000 * metres);
     return std::string(buffer.data());
   };
-  std::string text = "<div class=\"tiles\">\n" +
-                     tile(millimetres(evaluation.horizontal.mean), "mean horizontal error") +
-                     tile(millimetres(evaluation.horizontal.percentile90), "90 % of the errors below") +
-                     tile(millimetres(evaluation.horizontal.percentile95), "95 % of the errors below") +
-                     tile(millimetres(evaluation.horizontal.largest), "largest horizontal error") +
-                     tile(millimetres(evaluation.dispersion.radius()), "dispersion radius");
+  std::vector<vpReportTile> tiles = {
+      {millimetres(evaluation.horizontal.mean), "mean horizontal error"},
+      {millimetres(evaluation.horizontal.percentile90), "90 % of the errors below"},
+      {millimetres(evaluation.horizontal.percentile95), "95 % of the errors below"},
+      {millimetres(evaluation.horizontal.largest), "largest horizontal error"},
+      {millimetres(evaluation.dispersion.radius()), "dispersion radius"}};
   if (evaluation.fixes && evaluation.fixes->frames > 0) {
     std::array<char, 64> buffer;
     std::snprintf(buffer.data(), buffer.size(), "%.1f %%", 100 * evaluation.fixes->share());
-    text += tile(buffer.data(), "of the frames with a fix");
+    tiles.push_back({buffer.data(), "of the frames with a fix"});
     std::snprintf(buffer.data(), buffer.size(), "%.3g ms", 1000 * evaluation.fixes->compute.mean);
-    text += tile(buffer.data(), "mean time per frame");
+    tiles.push_back({buffer.data(), "mean time per frame"});
   }
-  return text + "</div>\n";
+  return tiles;
 }
 } // namespace
 
 std::string vpHtmlReport(const std::string &title, const std::vector<std::string> &sources,
                          const vpEvaluation &evaluation, const std::vector<vpReportFigure> &figures)
+{
+  return vpHtmlPage(title, sources, tilesOf(evaluation), figures, vpTablesOf(evaluation));
+}
+
+std::string vpHtmlPage(const std::string &title, const std::vector<std::string> &sources,
+                       const std::vector<vpReportTile> &tiles, const std::vector<vpReportFigure> &figures,
+                       const std::vector<vpReportTable> &tables)
 {
   std::string page = "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n"
                      "<meta charset=\"utf-8\"/>\n"
@@ -184,8 +189,13 @@ std::string vpHtmlReport(const std::string &title, const std::vector<std::string
     page += "<p class=\"source\">" + escaped(source) + "</p>\n";
   }
   page += "</header>\n<main>\n";
-  if (!evaluation.pairs.empty()) {
-    page += tiles(evaluation);
+  if (!tiles.empty()) {
+    page += "<div class=\"tiles\">\n";
+    for (const vpReportTile &tile : tiles) {
+      page += "<div class=\"tile\"><b>" + escaped(tile.value) + "</b><span>" + escaped(tile.meaning) +
+              "</span></div>\n";
+    }
+    page += "</div>\n";
   }
   if (!figures.empty()) {
     page += "<h2>Figures</h2>\n<div class=\"figures\">\n";
@@ -196,7 +206,7 @@ std::string vpHtmlReport(const std::string &title, const std::vector<std::string
     page += "</div>\n";
   }
   page += "<h2>Numbers</h2>\n<div class=\"tables\">\n";
-  for (const vpReportTable &table : vpTablesOf(evaluation)) {
+  for (const vpReportTable &table : tables) {
     page += html(table);
   }
   return page + "</div>\n</main>\n</body>\n</html>\n";

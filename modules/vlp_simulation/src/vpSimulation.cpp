@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <visp3/core/vpRotationMatrix.h>
 
@@ -66,15 +67,27 @@ std::vector<vpSimulatedLamp> trueLamps(const vpScenario &scenario, std::uint64_t
   }
   return lamps;
 }
+
+vpScenario seeded(const vpScenario &scenario, std::uint64_t seed)
+{
+  vpScenario drawn = scenario;
+  drawn.motion.robot.seed = seed;
+  return drawn;
+}
 } // namespace
 
 vpSimulation::vpSimulation(const vpScenario &scenario, std::uint64_t seed)
-    : m_scenario(scenario), m_seed(seed), m_camera(scenario.camera), m_scene(scenario.scene)
+    : vpSimulation(scenario, seed, seeded(scenario, seed).makeMotion())
 {
-  m_scenario.motion.robot.seed = seed;
+}
+
+vpSimulation::vpSimulation(const vpScenario &scenario, std::uint64_t seed,
+                           std::unique_ptr<vpRobotMotion> motion)
+    : m_scenario(scenario), m_seed(seed), m_camera(scenario.camera), m_scene(scenario.scene),
+      m_motion(std::move(motion))
+{
   m_camera.rig = trueRig(scenario, seed);
   m_scene.lamps = trueLamps(scenario, seed);
-  m_motion = m_scenario.makeMotion();
   m_renderer = std::make_unique<vpRollingShutterRenderer>(m_camera);
 }
 

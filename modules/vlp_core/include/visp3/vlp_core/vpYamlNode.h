@@ -37,6 +37,8 @@ public:
   size_t choice(const std::string &key, const std::vector<std::string> &choices) const;
   //! Exactly \e count numbers.
   std::vector<double> numbers(const std::string &key, size_t count, Range range = Range::any) const;
+  //! A list of lists of exactly \e count numbers each, as points are written.
+  std::vector<std::vector<double>> numberLists(const std::string &key, size_t count) const;
   unsigned int wholeNumber(const std::string &key, unsigned int least = 0) const;
   vpYamlNode mapping(const std::string &key) const;
   std::vector<vpYamlNode> mappings(const std::string &key) const;

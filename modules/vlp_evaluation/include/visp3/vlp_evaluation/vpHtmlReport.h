@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <visp3/vlp_evaluation/vpEvaluation.h>
+#include <visp3/vlp_evaluation/vpReportTable.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -19,6 +20,12 @@ struct VISP_EXPORT vpReportFigure {
   std::string svg; // as vpFigure::svg
 };
 
+//! A number that a page shows large.
+struct VISP_EXPORT vpReportTile {
+  std::string value;
+  std::string meaning;
+};
+
 /*!
   One HTML page, well-formed as XML too, that holds the tables and figures and refers to nothing outside of
   it. \param title Any text, and so are the names of the files. \param sources Lines that say where the data
@@ -27,6 +34,12 @@ struct VISP_EXPORT vpReportFigure {
 VISP_EXPORT std::string vpHtmlReport(const std::string &title, const std::vector<std::string> &sources,
                                      const vpEvaluation &evaluation,
                                      const std::vector<vpReportFigure> &figures);
+
+//! Such a page of anything: tiles, figures and tables.
+VISP_EXPORT std::string vpHtmlPage(const std::string &title, const std::vector<std::string> &sources,
+                                   const std::vector<vpReportTile> &tiles,
+                                   const std::vector<vpReportFigure> &figures,
+                                   const std::vector<vpReportTable> &tables);
 
 END_VISP_NAMESPACE
 

@@ -30,6 +30,8 @@ class VISP_EXPORT vpSimulation : public vpFrameSource
 {
 public:
   vpSimulation(const vpScenario &scenario, std::uint64_t seed);
+  //! The same world, with \e motion in place of the scenario's own, as of a robot that somebody else drives.
+  vpSimulation(const vpScenario &scenario, std::uint64_t seed, std::unique_ptr<vpRobotMotion> motion);
   ~vpSimulation() override;
 
   bool next(vpVlpFrame &frame) override;
