@@ -49,6 +49,12 @@ vpExitCode run(int argc, char **argv)
   if (command == "shutter") {
     return vpCalibrateShutter(argc, argv);
   }
+  if (command == "mount") {
+    return vpCalibrateMount(argc, argv);
+  }
+  if (command == "lamps") {
+    return vpCalibrateLamps(argc, argv);
+  }
   throw vpException(vpException::badValue,
                     "command: " + (command.empty() ? std::string("none") : vpShown(command)) +
                         ", expected camera, shutter, mount or lamps (--help explains them)");

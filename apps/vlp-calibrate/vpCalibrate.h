@@ -16,6 +16,8 @@
 BEGIN_VISP_NAMESPACE
 
 vpExitCode vpCalibrateShutter(int argc, char **argv);
+vpExitCode vpCalibrateMount(int argc, char **argv);
+vpExitCode vpCalibrateLamps(int argc, char **argv);
 
 END_VISP_NAMESPACE
 

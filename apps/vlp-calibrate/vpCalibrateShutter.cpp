@@ -18,6 +18,8 @@
 #include "common/vpCommandLine.h"
 #include "common/vpFrameOptions.h"
 #include "common/vpTextBlock.h"
+#include "vpCalibrationOutput.h"
+#include "vpRunOptions.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -29,8 +31,8 @@ const char *const description =
 const char *const footer = R"(
 Examples:
   vlp-calibrate shutter --image lamp.png --frequency 1000
-  vlp-calibrate shutter --run recorded --out calibrated/rig.yaml
-  vlp-calibrate shutter --images 'frames/%04d.png' --rig rig.yaml --lamps lamps.yaml --out rig-new.yaml
+  vlp-calibrate shutter --run recorded --out calibrated
+  vlp-calibrate shutter --images 'frames/%04d.png' --rig rig.yaml --lamps lamps.yaml --out calibrated
 
 Lines may be rows or columns: the pictures show which. Which end of the picture is read first they do not show:
 the rig's word on it stays. --frequency: all that blinks in the pictures is a lamp of that frequency. --lamps: lamps
@@ -56,7 +58,7 @@ struct Options {
     vpAddName(app, "--lamps", lamps, "FILE", "lamps of known frequency; default with --run: DIR/lamps.yaml");
     vpAddName(app, "--frequency", frequency, "HZ", "of the only lamp, or of all, in place of --lamps");
     vpAddName(app, "--ppm", ppm, "PPM", "standard deviation of that frequency (default 50: a crystal)");
-    vpAddName(app, "--out", out, "FILE", "write the rig with the shutter that was found; needs --rig");
+    vpAddName(app, "--out", out, "DIR", "write rig.yaml with the shutter that was found, camera.xml and report.txt; needs --rig");
     if (!vpParseCommandLine(app, argc, argv)) {
       return false;
     }
@@ -89,24 +91,15 @@ struct Options {
     vpLamp lamp;
     lamp.id = "lamp";
     lamp.modulation.kind = vpModulation::Kind::pwm;
-    lamp.modulation.frequency = positive("--frequency", frequency);
+    lamp.modulation.frequency = vpPositiveOption("--frequency", frequency);
     if (!ppm.empty()) {
-      lamp.oscillatorPpm = positive("--ppm", ppm);
+      lamp.oscillatorPpm = vpPositiveOption("--ppm", ppm);
     }
     return vpLampMap{{lamp}};
   }
-
-  static double positive(const std::string &option, const std::string &text)
-  {
-    double value = 0;
-    if (!vpParseNumber(text, value) || !std::isfinite(value) || !(value > 0)) {
-      throw vpException(vpException::badValue, option + ": " + vpShown(text) + ", expected a number above 0");
-    }
-    return value;
-  }
 };
 
-void print(const vpShutterEstimate &found)
+std::string textOf(const vpShutterEstimate &found)
 {
   vpReportTable table;
   table.heading = "Shutter";
@@ -118,8 +111,6 @@ void print(const vpShutterEstimate &found)
     table.rows.push_back({"effective exposure, us", vpFormat("%.2f", 1e6 * found.exposure),
                           vpFormat("%.2f", 1e6 * found.exposureSigma)});
   }
-  std::cout << table.text() << "\n";
-
   vpReportTable each;
   each.heading = "Lamps";
   each.columns = {"picture", "lamp", "row time, us", "standard deviation", "exposure, us", ""};
@@ -128,7 +119,7 @@ void print(const vpShutterEstimate &found)
                          vpFormat("%.5f", 1e6 * sight.rowTime), vpFormat("%.5f", 1e6 * sight.sigma),
                          vpFormat("%.2f", 1e6 * sight.exposure), sight.used ? "" : "left out"});
   }
-  std::cout << each.text();
+  return table.text() + "\n" + each.text();
 }
 } // namespace
 
@@ -151,7 +142,8 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
     spdlog::error(vpOneLine(found.refusal));
     return vpExitCode::nothingFound;
   }
-  print(found);
+  const std::string text = textOf(found);
+  std::cout << text;
   if (!options.out.empty()) {
     rig.shutter.rowTime = found.rowTime;
     rig.shutter.rowTimeSigma = found.rowTimeSigma;
@@ -164,8 +156,10 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
       spdlog::warn("the rig had the readout along {}; which end is first is unknown, {} is written",
                    found.alongColumns ? "rows" : "columns", found.alongColumns ? "columns" : "rows");
     }
-    rig.save(options.out);
-    spdlog::info(vpOneLine(options.out) + ": the rig with this shutter, its camera beside it");
+    const vpCalibrationFolder folder(options.out);
+    folder.write("report.txt", text);
+    folder.writeRig(rig);
+    spdlog::info(vpOneLine(options.out) + ": rig.yaml with this shutter, camera.xml, report");
   }
   return vpExitCode::done;
 }

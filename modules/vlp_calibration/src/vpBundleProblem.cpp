@@ -24,6 +24,39 @@ using Motion = vpLampRun::Motion;
 
 const double huber = 3; // standard deviations from which on a residual counts less
 
+//! Standard deviations that hold a parameter that nothing else holds, so that it stays a number.
+vpRigVector boundsOfFree()
+{
+  static const double wide = 50;
+  vpRigVector bounds;
+  for (int i = 0; i < vpRigParameterCount; ++i) {
+    bounds(i) = wide * vpRigParameterInfo::all()[static_cast<size_t>(i)].coarse;
+  }
+  return bounds;
+}
+
+/*!
+  By how much the variance of a sum of neighbouring residuals exceeds the sum of their variances: 1 where they are
+  independent. Their correlations are weighed by Bartlett's window (Newey and West 1987).
+*/
+double correlated(const std::vector<double> &residuals, const std::vector<size_t> &rows)
+{
+  static const size_t longest = 36; // steps: three seconds of frames
+  double variance = 0;
+  for (const size_t row : rows) {
+    variance += residuals[row] * residuals[row];
+  }
+  double ratio = 1;
+  for (size_t lag = 1; lag <= std::min(longest, rows.size() / 4); ++lag) {
+    double product = 0;
+    for (size_t i = lag; i < rows.size(); ++i) {
+      product += residuals[rows[i]] * residuals[rows[i - lag]];
+    }
+    ratio += 2 * (1 - static_cast<double>(lag) / (longest + 1)) * product / std::max(variance, 1e-300);
+  }
+  return std::max(1.0, ratio);
+}
+
 template <int Residuals, int... Blocks, typename Functor>
 ceres::CostFunction *cost(Functor *functor)
 {
@@ -118,7 +151,7 @@ void vpBundleProblem::addPriors()
   const std::vector<Row> three(3, Row::other);
   if (!m_freeRig.empty()) {
     add(cost<vpRigParameterCount, vpRigParameterCount>(new vpPriorResidual<vpRigParameterCount>{
-            vpRigStep(m_start.rig, m_prior), m_bundle.rigSigma}),
+            vpRigStep(m_start.rig, m_prior), m_bundle.rigSigma.cwiseMin(boundsOfFree())}),
         false, {m_rig.data()}, std::vector<Row>(vpRigParameterCount, Row::other));
   }
   const Vector5d odometrySigma(
@@ -203,7 +236,6 @@ bool vpBundleProblem::solve()
 
 vpNormalEquations vpBundleProblem::equations()
 {
-  if(getenv("DBG")) fprintf(stderr,"w %g %g %g %g\n",m_imageWeight,m_stepWeight(0),m_stepWeight(1),m_stepWeight(2));
   std::vector<double *> poses, rest;
   std::set<double *> known;
   for (Pose &pose : m_poses) {
@@ -233,16 +265,17 @@ std::vector<size_t> vpBundleProblem::rowsOf(Row kind) const
   return rows;
 }
 
-void vpBundleProblem::weigh()
+bool vpBundleProblem::weigh()
 {
+  bool settled = true;
   const vpNormalEquations equations = this->equations();
-  const auto weighOne = [&](Row kind, double &weight) {
+  const auto weighOne = [&](Row kind, double &weight, bool series) {
     const std::vector<size_t> rows = rowsOf(kind);
     if (rows.empty()) {
       return;
     }
     const double redundancy = equations.redundancy(rows);
-    static const double least = 20; // fewer say little of their own errors
+    static const double least = 5; // fewer say little of their own errors
     if (redundancy < least) {
       return;
     }
@@ -251,12 +284,17 @@ void vpBundleProblem::weigh()
       squares += equations.residuals()[row] * equations.residuals()[row];
     }
     static const double lowest = 1e-3; // of a stated sigma; observations without any noise
-    weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12)), lowest, 1 / lowest);
+    const double more = series ? correlated(equations.residuals(), rows) : 1; // slip lasts longer than a step
+    const double before = weight;
+    weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12) / more), lowest, 1 / lowest);
+    static const double nearly = 0.03; // a share
+    settled = settled && std::abs(std::log(weight / before)) < nearly;
   };
-  weighOne(Row::image, m_imageWeight);
-  weighOne(Row::along, m_stepWeight(0));
-  weighOne(Row::sideways, m_stepWeight(1));
-  weighOne(Row::turn, m_stepWeight(2));
+  weighOne(Row::image, m_imageWeight, false);
+  weighOne(Row::along, m_stepWeight(0), true);
+  weighOne(Row::sideways, m_stepWeight(1), true);
+  weighOne(Row::turn, m_stepWeight(2), true);
+  return settled;
 }
 
 vpBundleResidual vpBundleProblem::residualOf(size_t view, size_t image) const
@@ -359,7 +397,9 @@ std::vector<std::string> vpBundleProblem::unseparated()
                  vpRigParameterInfo::all()[static_cast<size_t>(m_freeRig[static_cast<size_t>(i)])].name;
       }
     }
-    found.push_back(names);
+    if (std::find(found.begin(), found.end(), names) == found.end()) {
+      found.push_back(names);
+    }
   }
   return found;
 }

@@ -30,8 +30,8 @@ public:
   //! Builds the problem of the images still used and solves it. \return False where it comes to no end.
   bool solve();
 
-  //! Weighs images and odometry by what their residuals show.
-  void weigh();
+  //! Weighs images and odometry by what their residuals show. \return Whether the weights were right before.
+  bool weigh();
 
   //! Leaves out images that are too far off. \return How many.
   size_t dropOutliers();

@@ -75,8 +75,10 @@ struct vpImageResidual {
     ceres::AngleAxisRotatePoint(back, b.data(), upright.data());
     const Vector inCamera = cRb.cast<T>() * upright;
     const Eigen::Matrix<T, 2, 1> ray = vpPixelRay(rig->camera, image.point, step[6], step[7], step[8]);
-    return {T(rig->camera.get_px()) * (ray(0) - inCamera(0) / inCamera(2)),
-            T(rig->camera.get_py()) * (ray(1) - inCamera(1) / inCamera(2))};
+    // In pixels of the camera that is looked for: in those of the one given, a longer lens would make errors smaller.
+    const T longer = T(1.0) + step[8];
+    return {T(rig->camera.get_px()) * longer * (ray(0) - inCamera(0) / inCamera(2)),
+            T(rig->camera.get_py()) * longer * (ray(1) - inCamera(1) / inCamera(2))};
   }
 
   template <typename T>

@@ -25,14 +25,15 @@ vpBundleResult vpLampBundle::solve(const std::vector<vpLampRun> &runs, const vpV
     return result;
   }
   vpBundleProblem problem(*this, runs, rig, map, start);
-  static const int rounds = 4; // in which the weights settle
-  for (int round = 0; round < rounds; ++round) {
+  static const int rounds = 8; // in which the weights settle
+  bool settled = false;
+  for (int round = 0; round < rounds && !settled; ++round) {
     if (!problem.solve()) {
       result.refusal = "the adjustment comes to no end; check that lamps and rig are near what the files say";
       return result;
     }
-    problem.weigh();
-    problem.dropOutliers();
+    settled = problem.weigh();
+    settled = problem.dropOutliers() == 0 && settled;
   }
   if (!problem.solve()) {
     result.refusal = "the adjustment comes to no end without the image points that were left out";

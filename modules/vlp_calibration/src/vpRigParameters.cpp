@@ -32,8 +32,8 @@ const std::array<vpRigParameterInfo, vpRigParameterCount> &vpRigParameterInfo::a
        {"roll", "deg", degrees, 1 / degrees},
        {"pitch", "deg", degrees, 1 / degrees},
        {"yaw", "deg", degrees, 1 / degrees},
-       {"u0", "px", 1, 10},
-       {"v0", "px", 1, 10},
+       {"u0", "px", 1, 4},
+       {"v0", "px", 1, 4},
        {"focal", "%", 100, 0.01}}};
   return infos;
 }

@@ -99,7 +99,7 @@ public:
   double odometryShare = 0.01;     // of a step, that it may be off by, standard deviation
   double odometryLength = 5e-5;    // m, likewise of each step
   double odometryTurn = 5e-4;      // rad, likewise
-  double sideways = 5e-5;          // m, likewise: a wheel's slip
+  double sideways = 5e-6;          // m, likewise
   /*!
     Distance of the wheels, m, where the odometry's turn rate is theirs: then one difference of their radii makes
     both driftPerTurn and turnPerMetre, and without that a sideways offset of the camera would pass for the former.
