@@ -206,6 +206,10 @@ void vpBundleProblem::hold()
                                   [](const vpLampRun &run) { return !run.odometry.empty(); });
   if (!moving) {
     m_problem->SetParameterBlockConstant(m_odometry.data());
+  } else { // wheels have no bias, and a gyro knows nothing of metres
+    static const int turnPerMetre = 3, turnBias = 4;
+    m_problem->SetManifold(m_odometry.data(),
+                           new ceres::SubsetManifold(5, {m_bundle.wheelSeparation > 0 ? turnBias : turnPerMetre}));
   }
 }
 
@@ -428,7 +432,7 @@ vpBundleResult vpBundleProblem::result()
   result.lampCovariance.assign(m_lamps.size(), Eigen::Matrix3d::Zero());
   result.lampImages.assign(m_lamps.size(), 0);
   auto column = static_cast<Eigen::Index>(m_freeRig.size());
-  column += m_problem->IsParameterBlockConstant(m_odometry.data()) ? 0 : 5;
+  column += m_problem->IsParameterBlockConstant(m_odometry.data()) ? 0 : m_problem->ParameterBlockTangentSize(m_odometry.data());
   for (size_t k = 0; k < m_lamps.size(); ++k) {
     const double *block = m_lamps[k].data();
     if (!m_problem->HasParameterBlock(block)) {

@@ -103,7 +103,7 @@ public:
   /*!
     Distance of the wheels, m, where the odometry's turn rate is theirs: then one difference of their radii makes
     both driftPerTurn and turnPerMetre, and without that a sideways offset of the camera would pass for the former.
-    0: the turn rate is a gyro's.
+    Wheels have no bias. 0: the turn rate is a gyro's, which has one, and knows nothing of metres.
   */
   double wheelSeparation = 0.16;
   double odometryScale = 0.05;       // of speed and turn rate, prior standard deviation
