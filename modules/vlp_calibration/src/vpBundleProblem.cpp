@@ -230,7 +230,7 @@ bool vpBundleProblem::solve()
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = m_bundle.maxIterations;
-  options.function_tolerance = 1e-10;
+  options.function_tolerance = 1e-9;
   options.parameter_tolerance = 1e-10;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
@@ -379,7 +379,7 @@ std::vector<std::string> vpBundleProblem::unseparated()
   if (others > 0) {
     const Eigen::MatrixXd across = information.topRightCorner(count, others);
     const Eigen::MatrixXd rest = information.bottomRightCorner(others, others);
-    own -= across * rest.completeOrthogonalDecomposition().solve(across.transpose());
+    own -= across * vpInverseOf(rest) * across.transpose();
   }
   Eigen::VectorXd coarse(count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -412,8 +412,7 @@ vpBundleResult vpBundleProblem::result()
 {
   vpBundleResult result;
   result.unseparated = unseparated();
-  const Eigen::MatrixXd information = equations().information();
-  const Eigen::MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd covariance = vpInverseOf(equations().information());
 
   result.rig = vpMovedRig(m_start.rig, m_rig);
   result.step = vpRigStep(m_prior, result.rig);

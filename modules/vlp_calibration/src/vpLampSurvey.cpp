@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/LU>
@@ -19,11 +20,18 @@ namespace
 {
 using State = vpSurveyedLamp::State;
 
-size_t displacedOf(const std::vector<vpSurveyedLamp> &lamps)
+//! m, root mean square distance of the lamps that were found from where the map has them; infinite without any.
+double offsetOf(const std::vector<vpSurveyedLamp> &lamps)
 {
-  return static_cast<size_t>(std::count_if(lamps.begin(), lamps.end(), [](const vpSurveyedLamp &lamp) {
-    return lamp.state == State::displaced;
-  }));
+  double squares = 0;
+  size_t count = 0;
+  for (const vpSurveyedLamp &lamp : lamps) {
+    if (lamp.state == State::found || lamp.state == State::displaced) {
+      squares += lamp.offset.squaredNorm();
+      ++count;
+    }
+  }
+  return count == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(squares / static_cast<double>(count));
 }
 } // namespace
 
@@ -64,6 +72,30 @@ std::vector<vpSurveyedLamp> vpLampSurvey::heldAgainst(const vpLampMap &map, cons
   return lamps;
 }
 
+//! With two measured lamps exchanged all is turned by half a turn, which explains the pictures as well: only the
+//! other lamps show it. \param offset m, how far these are from where the map has them.
+std::string vpLampSurvey::swappedLamps(const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
+                                       const vpLampMap &map, double offset) const
+{
+  if (measured.size() != 2 || !std::isfinite(offset)) {
+    return "";
+  }
+  const vpLamp &a = map.lamps[measured[0]], &b = map.lamps[measured[1]];
+  static const double share = 0.3; // of their distance: what nothing but such an exchange makes of all lamps
+  if (offset < share * (a.position - b.position).norm()) {
+    return "";
+  }
+  vpLampMap exchanged = map;
+  std::swap(exchanged.lamps[measured[0]].position, exchanged.lamps[measured[1]].position);
+  const vpBundleResult other = adjusted(vpThinned(runs, 200), rig, exchanged);
+  static const double better = 0.3;
+  if (!other.valid || !(offsetOf(heldAgainst(exchanged, other)) < better * offset)) {
+    return "";
+  }
+  return "lamps " + a.id + " and " + b.id +
+         " are swapped: with their places exchanged the other lamps are where the map has them; correct position_m";
+}
+
 vpSurveyResult vpLampSurvey::solve(const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
                                    const vpLampMap &map) const
 {
@@ -89,19 +121,10 @@ vpSurveyResult vpLampSurvey::solve(const std::vector<vpLampRun> &runs, const vpV
   }
   result.lamps = heldAgainst(map, result.bundle);
 
-  // With two measured lamps exchanged all is turned by half a turn, and explains the pictures as well.
-  const size_t others = map.lamps.size() - measured.size(), displaced = displacedOf(result.lamps);
-  if (measured.size() == 2 && others > 0 && 2 * displaced > others) {
-    vpLampMap exchanged = map;
-    std::swap(exchanged.lamps[measured[0]].position, exchanged.lamps[measured[1]].position);
-    const vpBundleResult other = adjusted(runs, rig, exchanged);
-    if (other.valid && 2 * displacedOf(heldAgainst(exchanged, other)) < displaced) {
-      result.bundle.valid = false;
-      result.bundle.refusal = "lamps " + map.lamps[measured[0]].id + " and " + map.lamps[measured[1]].id +
-                              " are swapped: with their places exchanged the other lamps are where the map has "
-                              "them; correct position_m";
-      return result;
-    }
+  if (const std::string swapped = swappedLamps(runs, rig, map, offsetOf(result.lamps)); !swapped.empty()) {
+    result.bundle.valid = false;
+    result.bundle.refusal = swapped;
+    return result;
   }
   for (size_t k = 0; k < result.lamps.size(); ++k) {
     if (result.lamps[k].state == State::undetermined || result.lamps[k].state == State::unseen) {

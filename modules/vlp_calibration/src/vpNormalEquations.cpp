@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <ceres/crs_matrix.h>
 
@@ -61,6 +62,18 @@ vpNormalEquations::vpNormalEquations(ceres::Problem &problem, const std::vector<
     m_information -= across.transpose() * factors.solve(across);
   }
   m_information = 0.5 * (m_information + m_information.transpose()).eval();
+}
+
+Eigen::MatrixXd vpInverseOf(const Eigen::MatrixXd &information)
+{
+  // Metres, radians, pixels: on a scale of their own all are told apart from what is not known at all.
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information *
+                                                             scale.asDiagonal());
+  static const double unknown = 1e-13;
+  const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(unknown).cwiseInverse();
+  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose() *
+         scale.asDiagonal();
 }
 
 double vpNormalEquations::redundancy(const std::vector<size_t> &rows) const

@@ -50,6 +50,9 @@ private:
   std::vector<double> m_residuals;
 };
 
+//! Covariance of what has that information, whatever its units; very large where nothing is known.
+Eigen::MatrixXd vpInverseOf(const Eigen::MatrixXd &information);
+
 END_VISP_NAMESPACE
 
 #endif

@@ -60,6 +60,8 @@ public:
 
 private:
   vpBundleResult adjusted(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map) const;
+  std::string swappedLamps(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map,
+                           double offset) const;
   std::vector<vpSurveyedLamp> heldAgainst(const vpLampMap &map, const vpBundleResult &result) const;
 };
 
