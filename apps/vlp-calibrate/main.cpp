@@ -46,6 +46,9 @@ vpExitCode run(int argc, char **argv)
   vpInterrupt::install();
   --argc;
   ++argv;
+  if (command == "camera") {
+    return vpCalibrateCamera(argc, argv);
+  }
   if (command == "shutter") {
     return vpCalibrateShutter(argc, argv);
   }

@@ -15,6 +15,7 @@
 
 BEGIN_VISP_NAMESPACE
 
+vpExitCode vpCalibrateCamera(int argc, char **argv);
 vpExitCode vpCalibrateShutter(int argc, char **argv);
 vpExitCode vpCalibrateMount(int argc, char **argv);
 vpExitCode vpCalibrateLamps(int argc, char **argv);
