@@ -4,7 +4,9 @@
  */
 #include <visp3/vlp_calibration/vpBoard.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
@@ -48,6 +50,17 @@ void findCharuco(const vpBoard &board, const cv::Mat &grey, vpBoardSight &sight)
     sight.pixels.clear();
     return;
   }
+  // OpenCV 4.5.4 to 4.12 shift what they refined by half a pixel (opencv issue 25539): refined once more it is right.
+  double square = std::numeric_limits<double>::infinity(); // px, of the smallest
+  for (size_t i = 0; i < sight.pixels.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      square = std::min(square, cv::norm(sight.pixels[i] - sight.pixels[k]));
+    }
+  }
+  static const double share = 0.12; // of a square: the markers begin at 0.15
+  const int half = std::clamp(static_cast<int>(share * square), 2, 8);
+  cv::cornerSubPix(grey, sight.pixels, cv::Size(half, half), cv::Size(-1, -1),
+                   cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 1e-3));
   for (const int corner : corners) {
     sight.board.push_back(charuco->chessboardCorners.at(static_cast<size_t>(corner)));
   }

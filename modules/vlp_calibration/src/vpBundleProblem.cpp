@@ -235,7 +235,8 @@ bool vpBundleProblem::solve()
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, m_problem.get(), &summary);
-  return summary.IsSolutionUsable() && m_rig.allFinite();
+  static const double shortest = 0.1; // of the focal length: below, nothing is explained any more
+  return summary.IsSolutionUsable() && m_rig.allFinite() && 1 + m_rig(static_cast<int>(vpRigParameter::focal)) > shortest;
 }
 
 vpNormalEquations vpBundleProblem::equations()
@@ -288,7 +289,9 @@ bool vpBundleProblem::weigh()
       squares += equations.residuals()[row] * equations.residuals()[row];
     }
     static const double lowest = 1e-3; // of a stated sigma; observations without any noise
-    const double more = series ? correlated(equations.residuals(), rows) : 1; // slip lasts longer than a step
+    // Slip lasts longer than a step. Where images hardly question the motion its residuals are smooth by themselves.
+    const double questioned = std::clamp(2 * redundancy / static_cast<double>(rows.size()) - 1, 0.0, 1.0);
+    const double more = series ? 1 + questioned * (correlated(equations.residuals(), rows) - 1) : 1;
     const double before = weight;
     weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12) / more), lowest, 1 / lowest);
     static const double nearly = 0.03; // a share
