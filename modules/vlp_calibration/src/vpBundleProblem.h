@@ -1,0 +1,87 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpBundleProblem_h
+#define vpBundleProblem_h
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <ceres/problem.h>
+#include <visp3/vlp_calibration/vpLampBundle.h>
+
+#include "vpBundleStart.h"
+#include "vpNormalEquations.h"
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  The Ceres problem of vpLampBundle, and the values that it moves. Solved, weighed and solved again.
+*/
+class vpBundleProblem
+{
+public:
+  vpBundleProblem(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs, const vpVlpRig &prior,
+                  const vpLampMap &priorMap, vpBundleStart &start);
+
+  //! Builds the problem of the images still used and solves it. \return False where it comes to no end.
+  bool solve();
+
+  //! Weighs images and odometry by what their residuals show. \return Whether the weights were right before.
+  bool weigh();
+
+  //! Leaves out images that are too far off. \return How many.
+  size_t dropOutliers();
+
+  vpBundleResult result();
+
+private:
+  using Vector5d = Eigen::Matrix<double, 5, 1>;
+  //! Rows of the residuals, in the order of m_blocks.
+  enum class Row { image, along, sideways, turn, other };
+  //! A view's values: those of a spin share one position.
+  struct Pose {
+    double *position;
+    double heading;
+  };
+
+  void build();
+  void addImages();
+  void addMotion();
+  void addPriors();
+  void hold();
+  void add(ceres::CostFunction *cost, bool robust, const std::vector<double *> &blocks,
+           const std::vector<Row> &rows);
+  vpNormalEquations equations();
+  std::vector<size_t> rowsOf(Row kind) const;
+  std::vector<std::string> unseparated();
+  vpRigMatrix covarianceOf(const Eigen::MatrixXd &covariance) const;
+  vpBundleResidual residualOf(size_t view, size_t image) const;
+
+  const vpLampBundle &m_bundle;
+  const std::vector<vpLampRun> &m_runs;
+  const vpVlpRig &m_prior; // the middle of the priors
+  const vpLampMap &m_priorMap;
+  vpBundleStart &m_start;
+
+  vpRigVector m_rig;               // step from the start's rig
+  Vector5d m_odometry = Vector5d::Zero(); // as vpOdometryError
+  std::vector<Eigen::Vector3d> m_lamps;
+  std::deque<Eigen::Vector2d> m_positions; // a deque: its places in memory stay
+  std::vector<Pose> m_poses;
+
+  double m_imageWeight = 1;
+  Eigen::Vector3d m_stepWeight = Eigen::Vector3d::Ones();
+
+  std::unique_ptr<ceres::Problem> m_problem;
+  std::vector<ceres::ResidualBlockId> m_blocks;
+  std::vector<Row> m_rows;
+  std::vector<int> m_freeRig; // indices of rig parameters that are free, ascending
+};
+
+END_VISP_NAMESPACE
+
+#endif

@@ -1,0 +1,378 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_calibration/vpCameraCalibration.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/rotation.h>
+#include <ceres/solver.h>
+#include <opencv2/calib3d.hpp>
+#include <visp3/vlp_core/vpNumberText.h>
+
+#include "vpCameraModel.h"
+#include "vpNormalEquations.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+using Model = vpCameraCalibration::Model;
+
+//! Where OpenCV says that all is.
+struct Start {
+  std::vector<double> parameters;
+  std::vector<std::array<double, 6>> poses; // rotation vector, translation (m)
+};
+
+//! \throw cv::Exception where OpenCV sees no way.
+Start startOf(Model model, const std::vector<vpBoardSight> &sights, cv::Size size)
+{
+  std::vector<std::vector<cv::Point3f>> boards;
+  std::vector<std::vector<cv::Point2f>> pixels;
+  for (const vpBoardSight &sight : sights) {
+    boards.push_back(sight.board);
+    pixels.push_back(sight.pixels);
+  }
+  cv::Mat K = cv::Mat::eye(3, 3, CV_64F), D;
+  std::vector<cv::Mat> turns, ways;
+  int flags = 0;
+  if (model != Model::opencv) {
+    flags |= cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
+    flags |= model == Model::perspective ? cv::CALIB_FIX_K1 : 0;
+  }
+  cv::calibrateCamera(boards, pixels, size, K, D, turns, ways, flags);
+  Start start;
+  start.parameters = {K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2), K.at<double>(1, 2)};
+  D = D.reshape(1, 1);
+  if (model == Model::visp) {
+    start.parameters.push_back(D.at<double>(0));
+  } else if (model == Model::kannalaBrandt) { // of an ideal lens tan(angle) = angle + angle^3 / 3 + ...
+    start.parameters.insert(start.parameters.end(), {1.0 / 3 + D.at<double>(0), 0, 0, 0});
+  } else if (model == Model::opencv) {
+    for (int i = 0; i < 5; ++i) {
+      start.parameters.push_back(D.at<double>(i));
+    }
+  }
+  for (size_t i = 0; i < turns.size(); ++i) {
+    std::array<double, 6> pose{};
+    for (int k = 0; k < 3; ++k) {
+      pose[static_cast<size_t>(k)] = turns[i].at<double>(k);
+      pose[static_cast<size_t>(k) + 3] = ways[i].at<double>(k);
+    }
+    start.poses.push_back(pose);
+  }
+  return start;
+}
+
+template <Model model>
+struct PointResidual {
+  Eigen::Vector3d board;
+  Eigen::Vector2d pixel;
+
+  template <typename T>
+  bool operator()(const T *parameters, const T *pose, T *residual) const
+  {
+    const T point[3] = {T(board.x()), T(board.y()), T(board.z())};
+    T c[3];
+    ceres::AngleAxisRotatePoint(pose, point, c);
+    const T z = c[2] + pose[5];
+    const Eigen::Matrix<T, 2, 1> at = vpPixelOf<model>(parameters, T((c[0] + pose[3]) / z), T((c[1] + pose[4]) / z));
+    residual[0] = T(pixel.x()) - at(0);
+    residual[1] = T(pixel.y()) - at(1);
+    return true;
+  }
+};
+
+//! Fits all to the points from where it starts. \return False where that comes to no end.
+template <Model model>
+bool adjust(const std::vector<vpBoardSight> &sights, Start &start, vpCameraEstimate &estimate)
+{
+  ceres::Problem problem;
+  std::vector<ceres::ResidualBlockId> blocks;
+  std::vector<double *> poses;
+  for (size_t i = 0; i < sights.size(); ++i) {
+    poses.push_back(start.poses[i].data());
+    for (size_t k = 0; k < sights[i].board.size(); ++k) {
+      const cv::Point3f &board = sights[i].board[k];
+      const cv::Point2f &pixel = sights[i].pixels[k];
+      auto *residual = new PointResidual<model>{{board.x, board.y, board.z}, {pixel.x, pixel.y}};
+      blocks.push_back(problem.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<PointResidual<model>, 2, vpParametersOf(model), 6>(residual), nullptr,
+          start.parameters.data(), start.poses[i].data()));
+    }
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-12;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (!summary.IsSolutionUsable()) {
+    return false;
+  }
+  const vpNormalEquations equations(problem, poses, {start.parameters.data()}, blocks);
+  const std::vector<double> &residuals = equations.residuals();
+  double squares = 0;
+  for (const double residual : residuals) {
+    squares += residual * residual;
+  }
+  const double freedom = static_cast<double>(residuals.size()) - vpParametersOf(model) - 6. * static_cast<double>(poses.size());
+  estimate.values = Eigen::Map<Eigen::VectorXd>(start.parameters.data(), vpParametersOf(model));
+  estimate.covariance = squares / std::max(1.0, freedom) * vpInverseOf(equations.information());
+  estimate.rms = std::sqrt(squares / static_cast<double>(residuals.size()));
+  size_t row = 0;
+  for (size_t i = 0; i < sights.size(); ++i) {
+    vpCalibratedView view;
+    view.picture = sights[i].picture;
+    const Eigen::Vector3d turn(start.poses[i][0], start.poses[i][1], start.poses[i][2]);
+    const Eigen::Matrix3d R(Eigen::AngleAxisd(turn.norm(), turn.norm() > 0 ? Eigen::Vector3d(turn.normalized()) : Eigen::Vector3d::UnitX()));
+    view.tilt = std::acos(std::min(1.0, std::abs(R(2, 2))));
+    double own = 0;
+    for (const cv::Point2f &pixel : sights[i].pixels) {
+      view.points.emplace_back(pixel.x, pixel.y);
+      view.residuals.emplace_back(residuals[row], residuals[row + 1]);
+      own += view.residuals.back().squaredNorm();
+      row += 2;
+    }
+    view.rms = std::sqrt(own / (2. * static_cast<double>(view.points.size())));
+    estimate.views.push_back(view);
+  }
+  return true;
+}
+
+//! kdu that undoes kud over the picture, by least squares over a grid of its pixels.
+double wayBack(double px, double py, double u0, double v0, double kud, unsigned int width, unsigned int height)
+{
+  double product = 0, square = 0;
+  static const int steps = 40;
+  for (int i = 0; i <= steps; ++i) {
+    for (int k = 0; k <= steps; ++k) {
+      const Eigen::Vector2d distorted((width - 1.) * i / steps - u0, (height - 1.) * k / steps - v0);
+      const Eigen::Vector2d d(distorted.x() / px, distorted.y() / py);
+      Eigen::Vector2d ray = d;
+      for (int round = 0; round < 20; ++round) {
+        ray = d / (1 + kud * ray.squaredNorm());
+      }
+      const Eigen::Vector2d by = d * d.squaredNorm();
+      product += (ray - d).dot(by);
+      square += by.squaredNorm();
+    }
+  }
+  return square > 0 ? product / square : 0;
+}
+
+vpCameraParameters cameraOf(Model model, const Eigen::VectorXd &p, unsigned int width, unsigned int height)
+{
+  vpCameraParameters camera;
+  if (model == Model::visp) {
+    camera.initPersProjWithDistortion(p(0), p(1), p(2), p(3), p(4),
+                                      wayBack(p(0), p(1), p(2), p(3), p(4), width, height));
+  } else if (model == Model::kannalaBrandt) {
+    camera.initProjWithKannalaBrandtDistortion(p(0), p(1), p(2), p(3), {p(4), p(5), p(6), p(7), 0});
+  } else {
+    camera.initPersProjWithoutDistortion(p(0), p(1), p(2), p(3));
+  }
+  return camera;
+}
+
+std::vector<std::string> namesOf(Model model)
+{
+  std::vector<std::string> names = {"px", "py", "u0", "v0"};
+  const std::vector<std::string> more = model == Model::visp            ? std::vector<std::string>{"kud"}
+                                        : model == Model::kannalaBrandt ? std::vector<std::string>{"k1", "k2", "k3", "k4"}
+                                        : model == Model::opencv
+                                            ? std::vector<std::string>{"k1", "k2", "p1", "p2", "k3"}
+                                            : std::vector<std::string>{};
+  names.insert(names.end(), more.begin(), more.end());
+  return names;
+}
+
+//! How many of the boards are held in ways of their own.
+size_t waysOf(const std::vector<vpBoardSight> &sights)
+{
+  // By their outlines: two boards whose points all lie within a few pixels of each other are held alike.
+  static const double alike = 10; // px
+  std::vector<const vpBoardSight *> ways;
+  for (const vpBoardSight &sight : sights) {
+    const bool known = std::any_of(ways.begin(), ways.end(), [&sight](const vpBoardSight *other) {
+      if (other->pixels.size() != sight.pixels.size()) {
+        return false;
+      }
+      double worst = 0;
+      for (size_t i = 0; i < sight.pixels.size(); ++i) {
+        worst = std::max(worst, cv::norm(sight.pixels[i] - other->pixels[i]));
+      }
+      return worst < alike;
+    });
+    if (!known) {
+      ways.push_back(&sight);
+    }
+  }
+  return ways.size();
+}
+} // namespace
+
+bool vpCameraCalibration::fit(const std::vector<vpBoardSight> &sights, unsigned int width, unsigned int height,
+                              vpCameraEstimate &estimate) const
+{
+  estimate = vpCameraEstimate();
+  bool good = false;
+  try {
+    Start start = startOf(model, sights, cv::Size(static_cast<int>(width), static_cast<int>(height)));
+    switch (model) {
+    case Model::perspective:
+      good = adjust<Model::perspective>(sights, start, estimate);
+      break;
+    case Model::visp:
+      good = adjust<Model::visp>(sights, start, estimate);
+      break;
+    case Model::kannalaBrandt:
+      good = adjust<Model::kannalaBrandt>(sights, start, estimate);
+      break;
+    case Model::opencv:
+      good = adjust<Model::opencv>(sights, start, estimate);
+      break;
+    }
+  } catch (const cv::Exception &) { // points on one line and the like
+    good = false;
+  }
+  if (good) {
+    estimate.names = namesOf(model);
+    estimate.camera = cameraOf(model, estimate.values, width, height);
+  }
+  return good;
+}
+
+std::string vpCameraCalibration::degenerate(const vpCameraEstimate &estimate, unsigned int width,
+                                            unsigned int height) const
+{
+  static const std::string tilted =
+      "take pictures with the board tilted by 20 to 40 degrees, to the left, right, front and back, up to the "
+      "corners of the picture";
+  const double px = estimate.values(0), py = estimate.values(1), u0 = estimate.values(2), v0 = estimate.values(3);
+  const auto sigma = [&](int i) { return std::sqrt(std::max(0.0, estimate.covariance(i, i))); };
+  if (!(px > 0 && py > 0) || !(u0 > 0 && u0 < width && v0 > 0 && v0 < height)) {
+    return "the pictures lead to a focal length of " + vpNumberText(std::round(px)) +
+           " px and a principal point at (" + vpNumberText(std::round(u0)) + ", " + vpNumberText(std::round(v0)) +
+           "), which cannot be: " + tilted;
+  }
+  if (!(sigma(0) < worstFocal * px && sigma(1) < worstFocal * py)) {
+    return "the focal length stays uncertain by " + vpNumberText(std::round(1000 * sigma(0) / px) / 10) +
+           " %, at most " + vpNumberText(100 * worstFocal) + " % is accepted: " + tilted;
+  }
+  if (!(sigma(2) < worstPrincipalPoint * width && sigma(3) < worstPrincipalPoint * width)) {
+    return "the principal point stays uncertain by " +
+           vpNumberText(std::round(10 * std::max(sigma(2), sigma(3))) / 10) + " px, at most " +
+           vpNumberText(worstPrincipalPoint * width) + " px are accepted: " + tilted;
+  }
+  return "";
+}
+
+vpCameraEstimate vpCameraCalibration::solve(const std::vector<vpBoardSight> &sights, unsigned int width,
+                                            unsigned int height) const
+{
+  vpCameraEstimate estimate;
+  std::vector<vpBoardSight> used;
+  for (const vpBoardSight &sight : sights) {
+    if (!sight.pixels.empty()) {
+      used.push_back(sight);
+    }
+  }
+  if (used.size() < fewestViews) {
+    estimate.refusal = "too few pictures: " + std::to_string(used.size()) + " of " + std::to_string(sights.size()) +
+                       " show the board, expected " + std::to_string(fewestViews) +
+                       " or more, better 15, each from another side";
+    return estimate;
+  }
+  static const size_t fewestWays = 3; // Zhang: two of a flat board do, without errors
+  if (const size_t ways = waysOf(used); ways < fewestWays) {
+    estimate.refusal = "all pictures are from one place: the board is held in " + std::to_string(ways) +
+                       " way" + (ways == 1 ? "" : "s") + ", expected " + std::to_string(fewestWays) +
+                       " or more, better 15; move and tilt it between the pictures";
+    return estimate;
+  }
+  const std::string noEnd = "the fit comes to no end; take other pictures, with the board tilted by 20 to 40 degrees";
+  if (!fit(used, width, height, estimate)) {
+    estimate.refusal = noEnd;
+    return estimate;
+  }
+
+  // Pictures far worse than the others: a board that bent, or moved while it was taken.
+  std::vector<double> errors;
+  for (const vpCalibratedView &view : estimate.views) {
+    errors.push_back(view.rms);
+  }
+  std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2), errors.end());
+  const double limit = outlier * errors[errors.size() / 2];
+  std::vector<vpCalibratedView> left;
+  std::vector<vpBoardSight> good;
+  for (size_t i = 0; i < used.size(); ++i) {
+    if (estimate.views[i].rms > limit) {
+      left.push_back(estimate.views[i]);
+      left.back().used = false;
+    } else {
+      good.push_back(used[i]);
+    }
+  }
+  if (!left.empty() && (good.size() < fewestViews || !fit(good, width, height, estimate))) {
+    estimate.refusal = good.size() < fewestViews ? "too few pictures without those far off the others" : noEnd;
+    return estimate;
+  }
+  estimate.refusal = degenerate(estimate, width, height);
+  if (!estimate.refusal.empty()) {
+    return estimate;
+  }
+  std::set<int> cells;
+  for (const vpCalibratedView &view : estimate.views) {
+    for (const Eigen::Vector2d &point : view.points) {
+      cells.insert(8 * std::clamp(static_cast<int>(6 * point.y() / height), 0, 5) +
+                   std::clamp(static_cast<int>(8 * point.x() / width), 0, 7));
+    }
+  }
+  estimate.coverage = static_cast<double>(cells.size()) / 48;
+  estimate.views.insert(estimate.views.end(), left.begin(), left.end());
+  estimate.valid = true;
+  return estimate;
+}
+
+std::string vpCameraInfoYaml(const vpCameraEstimate &estimate, Model model, const std::string &name,
+                             unsigned int width, unsigned int height)
+{
+  const Eigen::VectorXd &p = estimate.values;
+  const auto row = [](const std::vector<double> &values) {
+    std::string text;
+    for (const double value : values) {
+      text += (text.empty() ? "" : ", ") + vpNumberText(value);
+    }
+    return text;
+  };
+  std::vector<double> distortion(5, 0.0);
+  if (model == Model::kannalaBrandt) {
+    distortion = {p(4), p(5), p(6), p(7)};
+  } else {
+    for (Eigen::Index i = 4; i < p.size(); ++i) {
+      distortion[static_cast<size_t>(i - 4)] = p(i);
+    }
+  }
+  const auto matrix = [&](const std::string &key, int rows, int columns, const std::vector<double> &values) {
+    return key + ":\n  rows: " + std::to_string(rows) + "\n  cols: " + std::to_string(columns) + "\n  data: [" +
+           row(values) + "]\n";
+  };
+  return "image_width: " + std::to_string(width) + "\nimage_height: " + std::to_string(height) +
+         "\ncamera_name: " + name + "\n" +
+         matrix("camera_matrix", 3, 3, {p(0), 0, p(2), 0, p(1), p(3), 0, 0, 1}) + "distortion_model: " +
+         (model == Model::kannalaBrandt ? "equidistant" : "plumb_bob") + "\n" +
+         matrix("distortion_coefficients", 1, static_cast<int>(distortion.size()), distortion) +
+         matrix("rectification_matrix", 3, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1}) +
+         matrix("projection_matrix", 3, 4, {p(0), 0, p(2), 0, 0, p(1), p(3), 0, 0, 0, 1, 0});
+}
+
+END_VISP_NAMESPACE

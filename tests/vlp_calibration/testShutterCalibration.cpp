@@ -1,0 +1,97 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_calibration/vpShutterCalibration.h>
+#include <visp3/vlp_simulation/vpSimulation.h>
+
+#include "common/vpExpectError.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+//! The paper's room, its row time 3 % off what the rig says.
+vpSimulation simulation(std::uint64_t seed)
+{
+  vpScenario scenario = vpScenario::load("data/scenarios/spin.yaml");
+  scenario.deviation.rowTime = 1.03;
+  scenario.frames = 10;
+  return vpSimulation(scenario, seed);
+}
+
+vpImage<unsigned char> transposed(const vpImage<unsigned char> &I)
+{
+  vpImage<unsigned char> turned(I.getWidth(), I.getHeight());
+  for (unsigned int v = 0; v < I.getHeight(); ++v) {
+    for (unsigned int u = 0; u < I.getWidth(); ++u) {
+      turned[u][v] = I[v][u];
+    }
+  }
+  return turned;
+}
+
+TEST(ShutterCalibration, TenFramesTellARowTimeThatNobodyKnows)
+{
+  vpSimulation world = simulation(5);
+  vpVlpRig rig = world.rig();
+  rig.shutter.rowTime = 0;
+  vpShutterCalibration calibration(rig, world.map());
+  for (vpVlpFrame frame; world.next(frame);) {
+    calibration.add(frame);
+  }
+  const vpShutterEstimate found = calibration.solve();
+  ASSERT_TRUE(found.valid) << found.refusal;
+  const double truth = world.camera().rig.shutter.rowTime;
+  EXPECT_FALSE(found.alongColumns);
+  EXPECT_LT(std::abs(found.rowTime / truth - 1), 3e-4); // three times the median that is asked for
+  EXPECT_LT(std::abs(found.rowTime - truth), 4 * found.rowTimeSigma);
+  EXPECT_LT(found.rowTimeSigma, 2e-4 * truth);
+  EXPECT_NEAR(found.exposure, world.camera().rig.shutter.exposure, 0.05 * truth);
+}
+
+TEST(ShutterCalibration, ColumnsAreFoundByThemselves)
+{
+  vpSimulation world = simulation(6);
+  vpVlpRig rig = world.rig();
+  std::swap(rig.width, rig.height);
+  std::swap(rig.resize.sourceWidth, rig.resize.sourceHeight);
+  vpShutterCalibration calibration(rig, world.map()); // which says rows
+  vpVlpFrame frame;
+  for (int i = 0; i < 3 && world.next(frame); ++i) {
+    frame.I = transposed(frame.I);
+    calibration.add(frame);
+  }
+  const vpShutterEstimate found = calibration.solve();
+  ASSERT_TRUE(found.valid) << found.refusal;
+  EXPECT_TRUE(found.alongColumns);
+  EXPECT_NEAR(found.rowTime / world.camera().rig.shutter.rowTime, 1, 1e-3);
+}
+
+TEST(ShutterCalibration, SaysWhereThereAreNoStripes)
+{
+  vpLamp lamp;
+  lamp.id = "A";
+  lamp.modulation.kind = vpModulation::Kind::pwm;
+  lamp.modulation.frequency = 1000;
+  vpShutterCalibration calibration(vpVlpRig(), vpLampMap{{lamp}});
+  vpVlpFrame frame;
+  frame.I.resize(100, 120, 20);
+  calibration.add(frame);
+  const vpShutterEstimate found = calibration.solve();
+  EXPECT_FALSE(found.valid);
+  EXPECT_NE(found.refusal.find("no stripes"), std::string::npos) << found.refusal;
+}
+
+TEST(ShutterCalibration, NeedsALampOfKnownFrequency)
+{
+  vpLamp lamp;
+  lamp.id = "A";
+  vpExpectError([&] { vpShutterCalibration(vpVlpRig(), vpLampMap{{lamp}}); }, {"lamps", "frequency_hz"});
+}
+} // namespace
