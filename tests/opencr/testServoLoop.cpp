@@ -34,7 +34,7 @@ private:
   size_t m_missed = 0;
 };
 
-//! Line A at 0.1 m/s in simulated time. \return m, RMS of the true track across the path.
+//! The middle of line A at 0.1 m/s in simulated time. \return m, RMS of the true track across the path.
 double driveLine(const vpFaultyLine::Faults &faults, vpServoRun &run)
 {
   const vpScenario scenario = vpScenario::load(VLP_DATA_DIR "/scenarios/servo.yaml");

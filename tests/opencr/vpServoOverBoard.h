@@ -81,7 +81,7 @@ public:
   {
   }
 
-  //! Drives the line over the line that \e uri names, at 0.1 m/s.
+  //! Drives the line over the line that \e uri names, at 0.15 m/s.
   vpServoRun drive(const std::string &uri)
   {
     vpRobotTurtleBot3Settings settings;
@@ -92,7 +92,7 @@ public:
                             [this] { return m_clock.now(); });
     vpVlpPose poses(pictures);
     vpServoLoopSettings servo;
-    servo.follower.reference.speed = 0.1;
+    servo.follower.reference.speed = 0.15;
     vpServoLoop loop(*base, poses, m_clock, path(), servo);
     loop.battery = [&] { return base->status().batteryVoltage; };
     const vpServoRun run = loop.run();
@@ -113,7 +113,7 @@ public:
     return std::sqrt(sum / static_cast<double>(errors.size()));
   }
 
-  static vpPath path() { return vpPath::polyline({{-0.35, 0}, {0.35, -0.005}}); }
+  static vpPath path() { return vpPath::polyline({{-0.2, 0}, {0.2, -0.003}}); }
 
 private:
   static vpSimulatorTurtleBot3Settings worldOf(const vpScenario &scenario, double begin)

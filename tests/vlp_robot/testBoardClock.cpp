@@ -12,7 +12,7 @@
 using namespace VISP_NAMESPACE_NAME;
 #endif
 
-TEST(BoardClock, StaysNearTheTruthThroughDriftRolloverAndSlowAnswers)
+TEST(BoardClock, StaysNearTheTruthThroughDriftRolloverAndLateAnswers)
 {
   for (const double error : {0.0, 5e-5, -5e-5}) {
     for (const double notes : {0.001, 0.02}) { // s, from one note of the counter to the next
