@@ -5,6 +5,8 @@
 #include "common/vpCameraOptions.h"
 
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_sensor/vpCameraSource.h>
+#include <visp3/vlp_sensor/vpPictureSequence.h>
 #include <visp3/vlp_sensor/vpResizedSource.h>
 
 #include "common/vpCommandLine.h"
@@ -41,6 +44,10 @@ void vpCameraOptions::check() const
 std::unique_ptr<vpFrameSource> vpCameraOptions::open(const vpVlpRig &rig,
                                                      const std::function<bool()> &stop) const
 {
+  std::error_code ignored;
+  if (!vpCameraSource::isUri(uri) && std::filesystem::is_directory(uri, ignored)) {
+    return std::make_unique<vpPictureSequence>(vpPictureSequence::fromRun(uri));
+  }
   const bool resized = rig.resize.method != vpPictureResize::Method::none;
   vpCameraSettings settings;
   settings.exposure = exposure ? exposure : std::optional<double>(rig.shutter.exposure);

@@ -19,7 +19,7 @@ BEGIN_VISP_NAMESPACE
 
 //! Frames from a camera, as the programs' command lines ask for them: --camera, --exposure, --gain, --rate.
 struct vpCameraOptions {
-  std::string uri;                // empty: no camera was asked for
+  std::string uri;                // or the folder of a run in its place; empty: no camera was asked for
   std::optional<double> exposure; // s; as it comes the rig's
   std::optional<double> gain;     // in the camera's own unit; as it comes what the camera has
   std::optional<double> rate;     // Hz; likewise

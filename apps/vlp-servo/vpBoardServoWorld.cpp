@@ -4,8 +4,7 @@
  */
 #include "vpBoardServoWorld.h"
 
-#include <visp3/core/vpException.h>
-#include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_localization/vpVlpLocalizer.h>
 #include <visp3/vlp_robot/vpOpenTurtleBot3.h>
 
 BEGIN_VISP_NAMESPACE
@@ -13,17 +12,19 @@ BEGIN_VISP_NAMESPACE
 vpBoardServoWorld::vpBoardServoWorld(const vpVlpServoOptions &options)
     : m_clock(vpServoSimulationSettings().period)
 {
-  if (options.pose == vpVlpServoOptions::Pose::lamps) {
-    throw vpException(vpException::notImplementedError,
-                      "--camera: " + vpShown(options.camera) +
-                          ", for which this build has no driver, expected --odometry-only or --open-loop");
-  }
   if (!options.lampsFile.empty()) {
     m_map = vpLampMap::load(options.lampsFile);
   }
   vpRobotTurtleBot3Settings settings;
-  settings.clock = [this] { return m_clock.now(); };
   m_base = vpOpenTurtleBot3(options.robot, settings);
+  if (options.pose != vpVlpServoOptions::Pose::lamps) {
+    m_pictures = std::make_unique<NoPictures>();
+    return;
+  }
+  const vpVlpRig rig = vpVlpRig::load(options.rigFile);
+  m_camera = options.camera.open(rig, [this] { return m_closing.load(); });
+  m_pictures = std::make_unique<vpLivePictures>(*m_camera, vpVlpLocalizer(rig, m_map),
+                                                [this] { return m_clock.now(); });
 }
 
 END_VISP_NAMESPACE

@@ -122,7 +122,7 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   vpAddName(app, "--latency", delay, "S", "sim: of the localizer after a picture's readout (default 0.02 s)");
   vpAddName(app, "--rig", rigFile, "FILE", "the camera on the robot; default with sim: the scenario's");
   vpAddName(app, "--lamps", lampsFile, "FILE", "the lamp map; default with sim: the scenario's");
-  vpAddName(app, "--camera", camera, "URI", "of a real robot, as aravis://NAME or v4l2:///dev/video0");
+  camera.add(app);
   vpAddName(app, "--path", pathFile, "FILE", "the path to drive, see data/paths");
   vpAddName(app, "--speed", speed, "M/S", "along the path (default 0.1)");
   vpAddName(app, "--gain", gain, "1/S", "lambda of the visual task for small errors (default 2.5)");
@@ -177,14 +177,15 @@ void vpVlpServoOptions::check() const
   if (sim && scenario.empty()) {
     fail("--scenario: nothing, expected the file of the world that sim drives in");
   }
-  if (sim && !camera.empty()) {
-    fail("--camera: " + vpShown(camera) + " beside --robot sim, whose camera is the scenario's");
+  camera.check();
+  if (sim && !camera.uri.empty()) {
+    fail("--camera: " + vpShown(camera.uri) + " beside --robot sim, whose camera is the scenario's");
   }
   if (!sim && (!scenario.empty() || typical || wheelsOnly || realTime)) {
     fail("--scenario, --typical, --wheels-only, --real-time: beside --robot " + vpShown(robot) +
          ", expected them with sim only");
   }
-  if (!sim && pose == Pose::lamps && (rigFile.empty() || lampsFile.empty() || camera.empty())) {
+  if (!sim && pose == Pose::lamps && (rigFile.empty() || lampsFile.empty() || camera.uri.empty())) {
     fail("--rig, --lamps, --camera: expected all of them with a real robot");
   }
 }

@@ -12,6 +12,8 @@
 #include <visp3/vlp_servo/vpServoLoop.h>
 #include <visp3/vlp_servo/vpServoSimulation.h>
 
+#include "common/vpCameraOptions.h"
+
 BEGIN_VISP_NAMESPACE
 
 //! What the command line of vlp-servo says; a name that is empty was not given.
@@ -27,7 +29,7 @@ struct vpVlpServoOptions {
   double latency = 0.02;   // s, of sim's localizer
   std::string rigFile;
   std::string lampsFile;
-  std::string camera; // a URI
+  vpCameraOptions camera; // of a real robot
   std::string pathFile;
   Pose pose = Pose::lamps;
   std::optional<vpServoStart> start; // where the robot stands at first; default: at the start of the path

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpHostTime.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
 BEGIN_VISP_NAMESPACE
@@ -20,10 +21,7 @@ double seconds(std::chrono::steady_clock::duration duration)
 }
 } // namespace
 
-vpSteadyClock::vpSteadyClock(double period)
-    : m_period(period),
-      m_offset(std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count() -
-               seconds(Clock::now().time_since_epoch()))
+vpSteadyClock::vpSteadyClock(double period) : m_period(period)
 {
   if (!(period > 0 && std::isfinite(period))) {
     throw vpException(vpException::badValue,
@@ -33,7 +31,7 @@ vpSteadyClock::vpSteadyClock(double period)
 
 double vpSteadyClock::now()
 {
-  return m_offset + seconds(Clock::now().time_since_epoch());
+  return vpHostTime();
 }
 
 double vpSteadyClock::next()

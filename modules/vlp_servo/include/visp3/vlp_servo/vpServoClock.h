@@ -35,7 +35,7 @@ public:
   virtual size_t missed() const { return 0; }
 };
 
-//! Real time: the host's clock (since 1970), its periods kept by one that nobody sets.
+//! Real time: vpHostTime(), its periods kept by the steady clock.
 class VISP_EXPORT vpSteadyClock : public vpServoClock
 {
 public:
@@ -51,7 +51,6 @@ private:
   using Clock = std::chrono::steady_clock;
 
   double m_period; // s
-  double m_offset; // s, of the host's clock to the steady one, at the beginning
   Clock::time_point m_due;
   bool m_begun = false;
   size_t m_missed = 0;
