@@ -156,7 +156,13 @@ vpHomogeneousMatrix vpLiveSimulation::wMb(double time)
 
 bool vpLiveSimulation::next(vpVlpFrame &frame)
 {
-  const double read = m_begin + static_cast<double>(m_pictures++) * m_frameTime + m_readout;
+  const auto readAt = [this](size_t picture) {
+    return m_begin + static_cast<double>(picture) * m_frameTime + m_readout;
+  };
+  for (; readAt(m_pictures + 1) < m_now(); ++m_pictures) {
+    m_simulation->skip();
+  }
+  const double read = readAt(m_pictures++);
   std::this_thread::sleep_for(std::chrono::duration<double>(std::max(0.0, read - m_now())));
   {
     const std::lock_guard<std::mutex> lock(m_mutex);

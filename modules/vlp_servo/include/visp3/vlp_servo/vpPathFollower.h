@@ -27,8 +27,9 @@ struct VISP_EXPORT vpPathFollowerSettings {
 /*!
   Takes a base along a path: the reference ahead (vpPathReference), the base after it (vpPointServo).
 
-  It joins the path at the place closest to the base, of the path's first leg and its first half. At corners
-  it turns on the spot, where only the heading is controlled. A base that lags or is off slows the reference.
+  It joins the path at the place closest to the base: of its first leg, and if it is closed of its first half.
+  At corners it turns on the spot, where only the heading is controlled. A base that lags or is off slows the
+  reference.
 */
 class VISP_EXPORT vpPathFollower
 {

@@ -5,7 +5,6 @@
 #ifndef vpPictureFeed_h
 #define vpPictureFeed_h
 
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <memory>

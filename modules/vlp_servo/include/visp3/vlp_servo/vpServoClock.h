@@ -7,7 +7,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <functional>
 
 #include <visp3/vlp_core/vpVlpNamespace.h>
 

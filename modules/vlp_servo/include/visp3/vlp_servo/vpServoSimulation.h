@@ -85,8 +85,8 @@ private:
   The same world in real time, as a real robot and a real camera are: a base and a source of frames that two
   threads use side by side, on the host's clock.
 
-  next() waits for the end of a picture's readout, as a camera does. A picture that takes longer to draw than
-  the camera's period comes late, and so do those after it.
+  next() waits for the end of a picture's readout, as a camera does. Pictures that were read out while nobody
+  asked are left out but for the newest one.
 */
 class VISP_EXPORT vpLiveSimulation : public vpMobileBase, public vpFrameSource
 {

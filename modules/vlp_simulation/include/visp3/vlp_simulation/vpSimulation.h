@@ -36,6 +36,8 @@ public:
 
   bool next(vpVlpFrame &frame) override;
   size_t size() const override { return m_scenario.frames; }
+  //! Leaves the next frame out, undrawn, as a camera does whose frames nobody fetches.
+  void skip() { ++m_next; }
 
   //! True pose of the base in the map at \e time, s from the start of the run.
   vpHomogeneousMatrix wMb(double time) { return m_motion->wMb(time); }
