@@ -36,8 +36,8 @@ vpRigVector boundsOfFree()
 }
 
 /*!
-  By how much the variance of a sum of neighbouring residuals exceeds the sum of their variances: 1 where they are
-  independent. Their correlations are weighed by Bartlett's window (Newey and West 1987).
+  By how much the variance of a sum of neighbouring residuals exceeds the sum of their variances: 1 where they
+  are independent. Their correlations are weighed by Bartlett's window (Newey and West 1987).
 */
 double correlated(const std::vector<double> &residuals, const std::vector<size_t> &rows)
 {
@@ -119,10 +119,9 @@ void vpBundleProblem::addMotion()
     const vpBundleView &view = m_start.views[i];
     const Motion motion = m_runs[view.run].motion;
     if (motion == Motion::known) {
-      add(cost<3, 2, 1>(new vpPlaceResidual{view.start, m_runs[view.run].placeSigma,
-                                            m_runs[view.run].headingSigma}),
-          false, {m_poses[i].position, &m_poses[i].heading},
-          {Row::other, Row::other, Row::other});
+      add(cost<3, 2, 1>(
+              new vpPlaceResidual{view.start, m_runs[view.run].placeSigma, m_runs[view.run].headingSigma}),
+          false, {m_poses[i].position, &m_poses[i].heading}, {Row::other, Row::other, Row::other});
     }
     if (motion != Motion::wheels || i == 0 || m_start.views[i - 1].run != view.run) {
       continue;
@@ -154,10 +153,9 @@ void vpBundleProblem::addPriors()
             vpRigStep(m_start.rig, m_prior), m_bundle.rigSigma.cwiseMin(boundsOfFree())}),
         false, {m_rig.data()}, std::vector<Row>(vpRigParameterCount, Row::other));
   }
-  const Vector5d odometrySigma(
-      (Vector5d() << m_bundle.odometryScale, m_bundle.odometryDrift, m_bundle.odometryScale,
-       m_bundle.odometryTurnPerMetre, m_bundle.odometryBias)
-          .finished());
+  const Vector5d odometrySigma((Vector5d() << m_bundle.odometryScale, m_bundle.odometryDrift,
+                                m_bundle.odometryScale, m_bundle.odometryTurnPerMetre, m_bundle.odometryBias)
+                                   .finished());
   add(cost<5, 5>(new vpPriorResidual<5>{Vector5d::Zero(), odometrySigma}), false, {m_odometry.data()},
       std::vector<Row>(5, Row::other));
   if (m_bundle.wheelSeparation > 0) {
@@ -172,11 +170,9 @@ void vpBundleProblem::addPriors()
   }
   if (m_bundle.distance) {
     const vpLampDistance &known = *m_bundle.distance;
-    const Eigen::Vector3d way =
-        m_priorMap.lamps[known.to].position - m_priorMap.lamps[known.from].position;
-    add(cost<2, 3, 3>(
-            new vpDistanceResidual{known.metres, known.sigma, way.head<2>().normalized()}),
-        false, {m_lamps[known.from].data(), m_lamps[known.to].data()}, {Row::other, Row::other});
+    const Eigen::Vector3d way = m_priorMap.lamps[known.to].position - m_priorMap.lamps[known.from].position;
+    add(cost<2, 3, 3>(new vpDistanceResidual{known.metres, known.sigma, way.head<2>().normalized()}), false,
+        {m_lamps[known.from].data(), m_lamps[known.to].data()}, {Row::other, Row::other});
   }
 }
 
@@ -202,14 +198,15 @@ void vpBundleProblem::hold()
   if (m_bundle.distance) {
     m_problem->SetManifold(m_lamps[m_bundle.distance->from].data(), new ceres::SubsetManifold(3, {0, 1}));
   }
-  const bool moving = std::any_of(m_runs.begin(), m_runs.end(),
-                                  [](const vpLampRun &run) { return !run.odometry.empty(); });
+  const bool moving =
+      std::any_of(m_runs.begin(), m_runs.end(), [](const vpLampRun &run) { return !run.odometry.empty(); });
   if (!moving) {
     m_problem->SetParameterBlockConstant(m_odometry.data());
   } else { // wheels have no bias, and a gyro knows nothing of metres
     static const int turnPerMetre = 3, turnBias = 4;
-    m_problem->SetManifold(m_odometry.data(),
-                           new ceres::SubsetManifold(5, {m_bundle.wheelSeparation > 0 ? turnBias : turnPerMetre}));
+    m_problem->SetManifold(
+        m_odometry.data(),
+        new ceres::SubsetManifold(5, {m_bundle.wheelSeparation > 0 ? turnBias : turnPerMetre}));
   }
 }
 
@@ -236,7 +233,8 @@ bool vpBundleProblem::solve()
   ceres::Solver::Summary summary;
   ceres::Solve(options, m_problem.get(), &summary);
   static const double shortest = 0.1; // of the focal length: below, nothing is explained any more
-  return summary.IsSolutionUsable() && m_rig.allFinite() && 1 + m_rig(static_cast<int>(vpRigParameter::focal)) > shortest;
+  return summary.IsSolutionUsable() && m_rig.allFinite() &&
+         1 + m_rig(static_cast<int>(vpRigParameter::focal)) > shortest;
 }
 
 vpNormalEquations vpBundleProblem::equations()
@@ -289,8 +287,9 @@ bool vpBundleProblem::weigh()
       squares += equations.residuals()[row] * equations.residuals()[row];
     }
     static const double lowest = 1e-3; // of a stated sigma; observations without any noise
-    // Slip lasts longer than a step. Where images hardly question the motion its residuals are smooth by themselves.
-    const double questioned = std::clamp(2 * redundancy / static_cast<double>(rows.size()) - 1, 0.0, 1.0);
+    // Slip lasts longer than a step. Where images hardly question the motion its residuals are smooth by
+    // themselves.
+    const double questioned = std::clamp(4 * redundancy / static_cast<double>(rows.size()) - 2, 0.0, 1.0);
     const double more = series ? 1 + questioned * (correlated(equations.residuals(), rows) - 1) : 1;
     const double before = weight;
     weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12) / more), lowest, 1 / lowest);
@@ -340,16 +339,17 @@ vpRigMatrix vpBundleProblem::covarianceOf(const Eigen::MatrixXd &covariance) con
   vpRigMatrix all = vpRigMatrix::Zero();
   for (size_t i = 0; i < m_freeRig.size(); ++i) {
     for (size_t k = 0; k < m_freeRig.size(); ++k) {
-      all(m_freeRig[i], m_freeRig[k]) = covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      all(m_freeRig[i], m_freeRig[k]) =
+          covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
     }
   }
   return all;
 }
 
 /*!
-  Directions in which the rig's parameters stay as good as unknown: eigenvectors of the information that the data
-  alone have of them, the image points taken for so uncertain that no number of them averages away what a detector
-  is off by systematically.
+  Directions in which the rig's parameters stay as good as unknown: eigenvectors of the information that the
+  data alone have of them, the image points taken for so uncertain that no number of them averages away what a
+  detector is off by systematically.
 */
 std::vector<std::string> vpBundleProblem::unseparated()
 {
@@ -434,7 +434,9 @@ vpBundleResult vpBundleProblem::result()
   result.lampCovariance.assign(m_lamps.size(), Eigen::Matrix3d::Zero());
   result.lampImages.assign(m_lamps.size(), 0);
   auto column = static_cast<Eigen::Index>(m_freeRig.size());
-  column += m_problem->IsParameterBlockConstant(m_odometry.data()) ? 0 : m_problem->ParameterBlockTangentSize(m_odometry.data());
+  column += m_problem->IsParameterBlockConstant(m_odometry.data())
+                ? 0
+                : m_problem->ParameterBlockTangentSize(m_odometry.data());
   for (size_t k = 0; k < m_lamps.size(); ++k) {
     const double *block = m_lamps[k].data();
     if (!m_problem->HasParameterBlock(block)) {
