@@ -52,8 +52,7 @@ inline vpHomogeneousMatrix held(const vpBoard &board, int i, std::mt19937_64 &ra
   return vpHomogeneousMatrix(middle, R) * vpHomogeneousMatrix(toMiddle, vpRotationMatrix());
 }
 
-//! Corners as a detector of that noise (px) sees them; all of the board, beyond the picture's edge, too,
-//! where \e cut is false.
+//! Corners as a detector of that noise (px) sees them, those beyond the picture's edge, too.
 inline vpBoardSight sight(const vpBoard &board, const vpCameraParameters &camera,
                           const vpHomogeneousMatrix &cMo, double noise, std::mt19937_64 &random,
                           const std::string &name)
