@@ -30,9 +30,10 @@ void vpFrameOptions::check() const
   const int kinds =
       (runs.empty() ? 0 : 1) + (pattern.empty() ? 0 : 1) + (files.empty() ? 0 : 1) + (video.empty() ? 0 : 1);
   if (kinds != 1) {
-    throw vpException(vpException::badValue,
-                      "frames: " + std::string(kinds == 0 ? "none" : "more than one source") +
-                          ", expected one of --run, --images, --image and --video (--help explains the options)");
+    throw vpException(
+        vpException::badValue,
+        "frames: " + std::string(kinds == 0 ? "none" : "more than one source") +
+            ", expected one of --run, --images, --image and --video (--help explains the options)");
   }
 }
 

@@ -20,7 +20,8 @@ using namespace VISP_NAMESPACE_NAME;
 
 namespace
 {
-const char *const help = R"(Finds the parameters of a camera that looks up at blinking lamps, and where these hang.
+const char *const help =
+    R"(Finds the parameters of a camera that looks up at blinking lamps, and where these hang.
 
 Usage: vlp-calibrate COMMAND [OPTIONS]
 

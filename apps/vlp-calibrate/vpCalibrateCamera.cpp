@@ -28,7 +28,8 @@ namespace
 {
 using Model = vpCameraCalibration::Model;
 
-const char *const description = "Focal length, principal point and distortion from pictures of a flat board.\n";
+const char *const description =
+    "Focal length, principal point and distortion from pictures of a flat board.\n";
 
 const char *const footer = R"(
 Examples:
@@ -62,12 +63,14 @@ struct Options {
     CLI::App app(description, "vlp-calibrate camera");
     app.footer(footer);
     app.get_formatter()->column_width(28);
-    vpAddChoice(app, "--board", kind, {"chessboard", "charuco", "circles"}, "kind of the board (default chessboard)");
+    vpAddChoice(app, "--board", kind, {"chessboard", "charuco", "circles"},
+                "kind of the board (default chessboard)");
     vpAddName(app, "--size", size, "CxR", "inner corners, or circles, along both sides (default 9x6)");
     vpAddName(app, "--spacing", spacing, "MM", "side of a square, or from circle to circle (default 25)");
     vpAddName(app, "--print", print, "FILE", "write the board as a PDF in true size, and nothing else");
     frames.add(app);
-    vpAddChoice(app, "--model", model, {"visp", "perspective", "kannala-brandt", "opencv"}, "of the camera (default visp)");
+    vpAddChoice(app, "--model", model, {"visp", "perspective", "kannala-brandt", "opencv"},
+                "of the camera (default visp)");
     vpAddName(app, "--name", name, "NAME", "of the camera in the files (default camera)");
     vpAddName(app, "--out", out, "DIR", "write camera.xml, camera_info.yaml, residuals.png, report.txt");
     if (!vpParseCommandLine(app, argc, argv)) {
@@ -80,8 +83,8 @@ struct Options {
     double columns = 0, rows = 0;
     static const double most = 100;
     if (cross == std::string::npos || !vpParseNumber(size.substr(0, cross), columns) ||
-        !vpParseNumber(size.substr(cross + 1), rows) || columns != std::floor(columns) || rows != std::floor(rows) ||
-        !(std::min(columns, rows) >= 3 && std::max(columns, rows) <= most)) {
+        !vpParseNumber(size.substr(cross + 1), rows) || columns != std::floor(columns) ||
+        rows != std::floor(rows) || !(std::min(columns, rows) >= 3 && std::max(columns, rows) <= most)) {
       fail("--size: " + vpShown(size) + ", expected two whole numbers from 3 to 100, as 9x6");
     }
     board.columns = static_cast<int>(columns);
@@ -117,8 +120,8 @@ Seen look(const Options &options)
       if (seen.width != 0 && (frame.I.getWidth() != seen.width || frame.I.getHeight() != seen.height)) {
         throw vpException(vpException::dimensionError,
                           std::to_string(frame.I.getWidth()) + " x " + std::to_string(frame.I.getHeight()) +
-                              ", expected " + std::to_string(seen.width) + " x " + std::to_string(seen.height) +
-                              ", the size of the first picture");
+                              ", expected " + std::to_string(seen.width) + " x " +
+                              std::to_string(seen.height) + ", the size of the first picture");
       }
       seen.width = frame.I.getWidth();
       seen.height = frame.I.getHeight();
@@ -151,7 +154,8 @@ std::string textOf(const vpCameraEstimate &found, const Seen &seen)
   views.heading = "Pictures";
   views.columns = {"picture", "error, px rms", "tilt, deg", ""};
   for (const vpCalibratedView &view : found.views) {
-    views.rows.push_back({shortName(view.picture), vpFormat("%.3f", view.rms), vpFormat("%.0f", view.tilt * 180 / M_PI),
+    views.rows.push_back({shortName(view.picture), vpFormat("%.3f", view.rms),
+                          vpFormat("%.0f", view.tilt * 180 / M_PI),
                           view.used ? "" : "left out: far off the others"});
   }
   for (const vpBoardSight &sight : seen.sights) {
@@ -173,7 +177,8 @@ void write(const Options &options, const vpCameraEstimate &found, const Seen &se
     }
   }
   vpWritePicture(folder / "residuals.png",
-                 vpResidualPicture(cv::Size(static_cast<int>(seen.width), static_cast<int>(seen.height)), drawn, "camera"));
+                 vpResidualPicture(cv::Size(static_cast<int>(seen.width), static_cast<int>(seen.height)),
+                                   drawn, "camera"));
   folder.write("report.txt", text);
   folder.write("camera_info.yaml",
                vpCameraInfoYaml(found, options.calibration.model, options.name, seen.width, seen.height));

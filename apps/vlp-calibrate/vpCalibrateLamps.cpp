@@ -99,10 +99,11 @@ vpReportTable tableOf(const vpSurveyResult &found)
     const vpSurveyedLamp &lamp = found.lamps[k];
     const vpLamp &placed = found.bundle.map.lamps[k];
     const Eigen::Vector3d mm = 1000 * placed.position, sigma = 1000 * lamp.sigma, off = 1000 * lamp.offset;
-    table.rows.push_back({placed.id, vpFormat("%.2f", mm.x()), vpFormat("%.2f", mm.y()), vpFormat("%.2f", mm.z()),
-                          vpFormat("%.2f", sigma.x()), vpFormat("%.2f", sigma.y()), vpFormat("%.2f", sigma.z()),
-                          vpFormat("%+.1f %+.1f %+.1f", off.x(), off.y(), off.z()), std::to_string(lamp.images),
-                          states[static_cast<size_t>(lamp.state)]});
+    table.rows.push_back({placed.id, vpFormat("%.2f", mm.x()), vpFormat("%.2f", mm.y()),
+                          vpFormat("%.2f", mm.z()), vpFormat("%.2f", sigma.x()), vpFormat("%.2f", sigma.y()),
+                          vpFormat("%.2f", sigma.z()),
+                          vpFormat("%+.1f %+.1f %+.1f", off.x(), off.y(), off.z()),
+                          std::to_string(lamp.images), states[static_cast<size_t>(lamp.state)]});
   }
   return table;
 }
@@ -134,7 +135,8 @@ vpExitCode vpCalibrateLamps(int argc, char **argv)
   setMeasured(survey, map, measured);
   setDistance(survey, map, distance);
   if ((survey.measured.size() < 2) == !survey.distance || (survey.distance && !survey.measured.empty())) {
-    fail("--measured: " + std::to_string(survey.measured.size()) + (survey.distance ? " lamps beside --distance" : " lamps") +
+    fail("--measured: " + std::to_string(survey.measured.size()) +
+         (survey.distance ? " lamps beside --distance" : " lamps") +
          ", expected two or more, or one --distance instead");
   }
 

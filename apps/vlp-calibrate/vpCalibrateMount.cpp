@@ -19,8 +19,8 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const char *const description =
-    "How the camera sits on the robot, its principal point and its focal length, from a drive under known lamps.\n";
+const char *const description = "How the camera sits on the robot, its principal point and its focal length, "
+                                "from a drive under known lamps.\n";
 
 const char *const footer = R"(
 Examples:
@@ -78,7 +78,8 @@ vpExitCode vpCalibrateMount(int argc, char **argv)
     folder.write("report.txt", text);
     folder.write("covariance.csv", vpCovarianceCsv(found));
     folder.writeRig(found.rig);
-    spdlog::info(vpOneLine(options.out) + ": rig.yaml with its camera.xml, report, covariance, residuals.png");
+    spdlog::info(vpOneLine(options.out) +
+                 ": rig.yaml with its camera.xml, report, covariance, residuals.png");
   }
   return vpExitCode::done;
 }

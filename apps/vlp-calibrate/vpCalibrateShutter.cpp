@@ -54,11 +54,13 @@ struct Options {
     app.footer(footer);
     app.get_formatter()->column_width(28);
     frames.add(app);
-    vpAddName(app, "--rig", rig, "FILE", "what is known of the camera; default with --run: DIR/rig.yaml if there is one");
+    vpAddName(app, "--rig", rig, "FILE",
+              "what is known of the camera; default with --run: DIR/rig.yaml if there is one");
     vpAddName(app, "--lamps", lamps, "FILE", "lamps of known frequency; default with --run: DIR/lamps.yaml");
     vpAddName(app, "--frequency", frequency, "HZ", "of the only lamp, or of all, in place of --lamps");
     vpAddName(app, "--ppm", ppm, "PPM", "standard deviation of that frequency (default 50: a crystal)");
-    vpAddName(app, "--out", out, "DIR", "write rig.yaml with the shutter that was found, camera.xml and report.txt; needs --rig");
+    vpAddName(app, "--out", out, "DIR",
+              "write rig.yaml with the shutter that was found, camera.xml and report.txt; needs --rig");
     if (!vpParseCommandLine(app, argc, argv)) {
       return false;
     }
@@ -78,7 +80,8 @@ struct Options {
                                                    ", expected one of --frequency and --lamps");
     }
     if (!out.empty() && rig.empty()) {
-      throw vpException(vpException::badValue, "--out: " + out + " without --rig, expected the rig to complete");
+      throw vpException(vpException::badValue,
+                        "--out: " + out + " without --rig, expected the rig to complete");
     }
     return true;
   }
@@ -104,9 +107,10 @@ std::string textOf(const vpShutterEstimate &found)
   vpReportTable table;
   table.heading = "Shutter";
   table.columns = {"", "value", "standard deviation"};
-  table.rows = {{"readout along", found.alongColumns ? "columns" : "rows", ""},
-                {"row time, us", vpFormat("%.5f", 1e6 * found.rowTime), vpFormat("%.5f", 1e6 * found.rowTimeSigma)},
-                {"the same, %", "", vpFormat("%.4f", 100 * found.rowTimeSigma / found.rowTime)}};
+  table.rows = {
+      {"readout along", found.alongColumns ? "columns" : "rows", ""},
+      {"row time, us", vpFormat("%.5f", 1e6 * found.rowTime), vpFormat("%.5f", 1e6 * found.rowTimeSigma)},
+      {"the same, %", "", vpFormat("%.4f", 100 * found.rowTimeSigma / found.rowTime)}};
   if (std::isfinite(found.exposure)) {
     table.rows.push_back({"effective exposure, us", vpFormat("%.2f", 1e6 * found.exposure),
                           vpFormat("%.2f", 1e6 * found.exposureSigma)});

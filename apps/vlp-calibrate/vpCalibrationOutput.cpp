@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 //! Of a group, bright enough on a dark ground.
 cv::Scalar colourOf(size_t group)
 {
-  static const cv::Scalar colours[] = {{90, 230, 60},   {0, 225, 255},   {235, 150, 80},  {100, 165, 255},
-                                       {220, 110, 220}, {210, 210, 90},  {140, 140, 255}, {90, 200, 150}};
+  static const cv::Scalar colours[] = {{90, 230, 60},   {0, 225, 255},  {235, 150, 80},  {100, 165, 255},
+                                       {220, 110, 220}, {210, 210, 90}, {140, 140, 255}, {90, 200, 150}};
   return colours[group % (sizeof(colours) / sizeof(colours[0]))];
 }
 
@@ -44,7 +44,8 @@ double rounded(double value)
 }
 } // namespace
 
-cv::Mat vpResidualPicture(cv::Size size, const std::vector<vpDrawnResidual> &residuals, const std::string &title)
+cv::Mat vpResidualPicture(cv::Size size, const std::vector<vpDrawnResidual> &residuals,
+                          const std::string &title)
 {
   const double zoom = std::max(1.0, 800.0 / size.width), unit = size.width * zoom / 800;
   const int head = static_cast<int>(40 * unit);
@@ -67,13 +68,15 @@ cv::Mat vpResidualPicture(cv::Size size, const std::vector<vpDrawnResidual> &res
   for (const vpDrawnResidual &drawn : residuals) {
     const cv::Scalar colour = drawn.used ? colourOf(drawn.group) : cv::Scalar(120, 120, 120);
     const double longest = 200 * length; // px: an outlier's line goes over the edge, no farther
-    const Eigen::Vector2d way = drawn.residual * std::min(times, longest / std::max(drawn.residual.norm(), 1e-9));
+    const Eigen::Vector2d way =
+        drawn.residual * std::min(times, longest / std::max(drawn.residual.norm(), 1e-9));
     cv::line(picture, at(drawn.point), at(drawn.point + way / zoom * unit), colour, 1, cv::LINE_AA, 4);
     cv::circle(picture, at(drawn.point), static_cast<int>(24 * unit), colour, cv::FILLED, cv::LINE_AA, 4);
   }
   cv::rectangle(picture, cv::Rect(0, 0, picture.cols, head), cv::Scalar(60, 52, 48), cv::FILLED);
   vpDrawText(picture, title + vpFormat(": %zu points, %.3f px rms, drawn %g times as long", used, rms, times),
-             cv::Point(static_cast<int>(10 * unit), static_cast<int>(26 * unit)), unit, cv::Scalar(240, 240, 240));
+             cv::Point(static_cast<int>(10 * unit), static_cast<int>(26 * unit)), unit,
+             cv::Scalar(240, 240, 240));
   return picture;
 }
 
@@ -93,8 +96,8 @@ vpReportTable vpRigTable(const vpBundleResult &result, const vpRigVector &priors
   table.columns = {"", "value", "from the first guess", "standard deviation", ""};
   const Eigen::Vector3d angles = vpRollPitchYaw(result.rig.bMc);
   vpRigVector values;
-  values << result.rig.bMc[0][3], result.rig.bMc[1][3], result.rig.bMc[2][3], angles, result.rig.camera.get_u0(),
-      result.rig.camera.get_v0(), result.rig.camera.get_px();
+  values << result.rig.bMc[0][3], result.rig.bMc[1][3], result.rig.bMc[2][3], angles,
+      result.rig.camera.get_u0(), result.rig.camera.get_v0(), result.rig.camera.get_px();
   for (int i = 0; i < vpRigParameterCount; ++i) {
     const vpRigParameterInfo &info = vpRigParameterInfo::all()[static_cast<size_t>(i)];
     const bool focal = info.name == "focal";
@@ -104,9 +107,12 @@ vpReportTable vpRigTable(const vpBundleResult &result, const vpRigVector &priors
                           vpFormat("%.4f", (focal ? 1 : info.shown) * values(i)),
                           held ? "" : vpFormat("%+.4f %s", info.shown * result.step(i), focal ? "%" : ""),
                           held ? "" : vpFormat("%.4f %s", info.shown * sigma, focal ? "%" : ""),
-                          held ? "held" : std::isfinite(priors(i)) ? "with a prior" : ""});
+                          held                       ? "held"
+                          : std::isfinite(priors(i)) ? "with a prior"
+                                                     : ""});
   }
-  table.note = "roll, pitch, yaw: the value as in rig.yaml, about the fixed axes; the step about x, y, z of the base.";
+  table.note =
+      "roll, pitch, yaw: the value as in rig.yaml, about the fixed axes; the step about x, y, z of the base.";
   return table;
 }
 

@@ -23,10 +23,11 @@ struct vpDrawnResidual {
 };
 
 /*!
-  All residuals over the picture, as lines from each point, so much longer than they are that the usual one is seen;
-  how much is written there. \param size px, of the picture.
+  All residuals over the picture, as lines from each point, so much longer than they are that the usual one is
+  seen; how much is written there. \param size px, of the picture.
 */
-cv::Mat vpResidualPicture(cv::Size size, const std::vector<vpDrawnResidual> &residuals, const std::string &title);
+cv::Mat vpResidualPicture(cv::Size size, const std::vector<vpDrawnResidual> &residuals,
+                          const std::string &title);
 
 //! The residuals of a bundle, a colour for each lamp.
 std::vector<vpDrawnResidual> vpResidualsOf(const vpBundleResult &result);
@@ -38,8 +39,8 @@ vpReportTable vpRigTable(const vpBundleResult &result, const vpRigVector &priors
 std::string vpCovarianceCsv(const vpBundleResult &result);
 
 /*!
-  The folder of --out: made where there is none. Files appear whole, one after the other, the rig last: where it is
-  there, all is. \throw vpException (ioError) with one line where a file cannot be written.
+  The folder of --out: made where there is none. Files appear whole, one after the other, the rig last: where
+  it is there, all is. \throw vpException (ioError) with one line where a file cannot be written.
 */
 class vpCalibrationFolder
 {

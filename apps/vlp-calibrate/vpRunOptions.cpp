@@ -50,15 +50,18 @@ void vpRunOptions::add(CLI::App &app)
   frames.add(app);
   vpAddName(app, "--rig", rig, "FILE", "first guess of the rig; default with --run: DIR/rig.yaml");
   vpAddName(app, "--lamps", lamps, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
-  vpAddName(app, "--odometry", odometry, "FILE",
-            "timestamp_s,v_m_s,w_rad_s on the frames' clock; default with --run: DIR/odometry.csv if there is one");
-  vpAddChoice(app, "--motion", motion, {"wheels", "spin", "places", "unknown"},
-              "wheels (default): rolls without slipping sideways, and as the odometry says; spin: turns on one "
-              "spot; places: stood in those of --places; unknown");
+  vpAddName(
+      app, "--odometry", odometry, "FILE",
+      "timestamp_s,v_m_s,w_rad_s on the frames' clock; default with --run: DIR/odometry.csv if there is one");
+  vpAddChoice(
+      app, "--motion", motion, {"wheels", "spin", "places", "unknown"},
+      "wheels (default): rolls without slipping sideways, and as the odometry says; spin: turns on one "
+      "spot; places: stood in those of --places; unknown");
   vpAddName(app, "--places", places, "FILE", "TUM poses where the robot was put, at the times of the frames");
   vpAddChoice(app, "--turn-from", turnFrom, {"wheels", "gyro"},
               "what the odometry's turn rate comes from (default wheels)");
-  vpAddName(app, "--wheel-separation", separation, "M", "distance of the wheels (default 0.16: TurtleBot3 burger)");
+  vpAddName(app, "--wheel-separation", separation, "M",
+            "distance of the wheels (default 0.16: TurtleBot3 burger)");
   app.add_option("--fix", fixed, "parameters that the rig has right: of x,y,z,roll,pitch,yaw,u0,v0,focal")
       ->delimiter(',')
       ->type_name("NAME");
@@ -66,7 +69,8 @@ void vpRunOptions::add(CLI::App &app)
                  "standard deviation about the rig's value: NAME=SIGMA in m, deg, px, or a share for focal")
       ->delimiter(',')
       ->type_name("NAME=SIGMA");
-  vpAddName(app, "--out", out, "DIR", "write rig.yaml, camera.xml, residuals.png, report.txt, covariance.csv");
+  vpAddName(app, "--out", out, "DIR",
+            "write rig.yaml, camera.xml, residuals.png, report.txt, covariance.csv");
 }
 
 void vpRunOptions::finish()

@@ -49,14 +49,15 @@ protected:
       for (size_t at = text.find('%'); at != std::string::npos; at = text.find('%')) {
         text.replace(at, 1, VLP_DATA_DIR);
       }
-      vpProcess simulate("vlp-simulate",
-                         {"--scenario", folder.write("scenario.yaml", text), "--seed", "2", "--out", folder / "run"});
+      vpProcess simulate("vlp-simulate", {"--scenario", folder.write("scenario.yaml", text), "--seed", "2",
+                                          "--out", folder / "run"});
       EXPECT_EQ(simulate.wait(), done) << simulate.err();
     }
     return folder / "run";
   }
 
-  static void expectRefused(const std::vector<std::string> &words, int code, const std::vector<std::string> &parts)
+  static void expectRefused(const std::vector<std::string> &words, int code,
+                            const std::vector<std::string> &parts)
   {
     EXPECT_EQ(vpExpectRefused("vlp-calibrate", words, code, parts), "");
   }
@@ -72,7 +73,8 @@ TEST_F(VlpCalibrate, HelpNamesTheCommandsAndEachHasExamples)
     EXPECT_NE(help.out().find(command), std::string::npos);
     vpProcess own("vlp-calibrate", {command, "--help"});
     EXPECT_EQ(own.wait(), done);
-    EXPECT_NE(own.out().find("Examples:\n  vlp-calibrate " + std::string(command)), std::string::npos) << own.out();
+    EXPECT_NE(own.out().find("Examples:\n  vlp-calibrate " + std::string(command)), std::string::npos)
+        << own.out();
     EXPECT_NE(own.out().find("Exit code: 0 done; 2 bad usage"), std::string::npos);
   }
 }
@@ -82,7 +84,8 @@ TEST_F(VlpCalibrate, RefusesBadUsageInOneLine)
   expectRefused({}, badInput, {"command", "camera, shutter, mount or lamps"});
   expectRefused({"moont"}, badInput, {"moont"});
   expectRefused({"shutter", "--image", "a.png"}, badInput, {"--frequency"});
-  expectRefused({"shutter", "--image", "a.png", "--frequency", "fast"}, badInput, {"--frequency", "fast", "above 0"});
+  expectRefused({"shutter", "--image", "a.png", "--frequency", "fast"}, badInput,
+                {"--frequency", "fast", "above 0"});
   expectRefused({"camera", "--size", "9"}, badInput, {"--size", "9x6"});
   expectRefused({"mount", "--images", "a%d.png"}, badInput, {"--rig"});
   expectRefused({"mount", "--run", folder / "none"}, badInput, {"rig.yaml"});
@@ -90,15 +93,16 @@ TEST_F(VlpCalibrate, RefusesBadUsageInOneLine)
   expectRefused({"mount", "--run", run(), "--prior", "u0"}, badInput, {"--prior", "NAME=SIGMA"});
   expectRefused({"mount", "--run", run(), "--motion", "places"}, badInput, {"--places"});
   expectRefused({"lamps", "--run", run()}, badInput, {"--measured", "two or more"});
-  expectRefused({"lamps", "--run", run(), "--measured", "LED1,LED9"}, badInput, {"--measured", "LED9", "LED1, LED2"});
+  expectRefused({"lamps", "--run", run(), "--measured", "LED1,LED9"}, badInput,
+                {"--measured", "LED9", "LED1, LED2"});
   expectRefused({"lamps", "--run", run(), "--distance", "LED1,LED2"}, badInput, {"--distance"});
 }
 
 TEST_F(VlpCalibrate, ShutterWritesTheRig)
 {
-  vpProcess calibrate("vlp-calibrate", {"shutter", "--image", run() + "/frame000000.png", run() + "/frame000001.png",
-                                        "--rig", run() + "/rig.yaml", "--lamps", run() + "/lamps.yaml", "--out",
-                                        folder / "out"});
+  vpProcess calibrate("vlp-calibrate",
+                      {"shutter", "--image", run() + "/frame000000.png", run() + "/frame000001.png", "--rig",
+                       run() + "/rig.yaml", "--lamps", run() + "/lamps.yaml", "--out", folder / "out"});
   EXPECT_EQ(calibrate.wait(), done) << calibrate.err();
   EXPECT_NE(calibrate.out().find("row time, us"), std::string::npos);
   const vpVlpRig rig = vpVlpRig::load(folder / "out/rig.yaml");
@@ -122,10 +126,12 @@ TEST_F(VlpCalibrate, MountAndLampsWriteWhatTheyFound)
   const Eigen::Vector3d truth = map.lamps[2].position;
   map.lamps[2].position += Eigen::Vector3d(0.06, 0, 0);
   map.save(folder / "lamps.yaml");
-  vpProcess lamps("vlp-calibrate", {"lamps", "--run", run(), "--rig", folder / "mount/rig.yaml", "--lamps",
-                                    folder / "lamps.yaml", "--measured", "LED1,LED4", "--out", folder / "lamps"});
+  vpProcess lamps("vlp-calibrate",
+                  {"lamps", "--run", run(), "--rig", folder / "mount/rig.yaml", "--lamps",
+                   folder / "lamps.yaml", "--measured", "LED1,LED4", "--out", folder / "lamps"});
   ASSERT_EQ(lamps.wait(), done) << lamps.err();
-  EXPECT_NE(lamps.err().find("lamp LED3 is 60 mm from where the map has it"), std::string::npos) << lamps.err();
+  EXPECT_NE(lamps.err().find("lamp LED3 is 60 mm from where the map has it"), std::string::npos)
+      << lamps.err();
   const vpLampMap found = vpLampMap::load(folder / "lamps/lamps.yaml");
   EXPECT_LT((found.lamps[2].position - truth).norm(), 0.004);
 }

@@ -52,10 +52,10 @@ inline vpHomogeneousMatrix held(const vpBoard &board, int i, std::mt19937_64 &ra
   return vpHomogeneousMatrix(middle, R) * vpHomogeneousMatrix(toMiddle, vpRotationMatrix());
 }
 
-//! Corners as a detector of that noise (px) sees them; all of the board, beyond the picture's edge, too, where \e cut
-//! is false.
-inline vpBoardSight sight(const vpBoard &board, const vpCameraParameters &camera, const vpHomogeneousMatrix &cMo,
-                          double noise, std::mt19937_64 &random, const std::string &name)
+//! Corners as a detector of that noise (px) sees them, those beyond the picture's edge, too.
+inline vpBoardSight sight(const vpBoard &board, const vpCameraParameters &camera,
+                          const vpHomogeneousMatrix &cMo, double noise, std::mt19937_64 &random,
+                          const std::string &name)
 {
   std::normal_distribution<double> normal(0, noise);
   vpBoardSight sight;
@@ -67,7 +67,8 @@ inline vpBoardSight sight(const vpBoard &board, const vpCameraParameters &camera
       double u = 0, v = 0;
       vpMeterPixelConversion::convertPoint(camera, c[0] / c[2], c[1] / c[2], u, v);
       sight.board.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.f);
-      sight.pixels.emplace_back(static_cast<float>(u + normal(random)), static_cast<float>(v + normal(random)));
+      sight.pixels.emplace_back(static_cast<float>(u + normal(random)),
+                                static_cast<float>(v + normal(random)));
     }
   }
   return sight;
@@ -106,7 +107,8 @@ inline cv::Mat_<unsigned char> picture(const vpBoard &board, const vpCameraParam
           x = xd / share;
           y = yd / share;
         }
-        const double dx = oMc[0][0] * x + oMc[0][1] * y + oMc[0][2], dy = oMc[1][0] * x + oMc[1][1] * y + oMc[1][2],
+        const double dx = oMc[0][0] * x + oMc[0][1] * y + oMc[0][2],
+                     dy = oMc[1][0] * x + oMc[1][1] * y + oMc[1][2],
                      dz = oMc[2][0] * x + oMc[2][1] * y + oMc[2][2];
         const double far = -oMc[2][3] / dz;
         // The pattern has a margin of one square, and its first inner corner is one square further.

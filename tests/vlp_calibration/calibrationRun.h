@@ -7,9 +7,9 @@
 
 /*!
   \file calibrationRun.h
-  Drives under lamps for tests and benchmarks of vlp_calibration: a true TurtleBot with errors of its wheels, a true
-  camera and lamps, and what a detector of that noise would say of them. Nothing is rendered, and no formula of the
-  calibration is used.
+  Drives under lamps for tests and benchmarks of vlp_calibration: a true TurtleBot with errors of its wheels,
+  a true camera and lamps, and what a detector of that noise would say of them. Nothing is rendered, and no
+  formula of the calibration is used.
 */
 
 #include <algorithm>
@@ -33,9 +33,9 @@ struct World {
   vpVlpRig rig;  // true
   vpLampMap map; // true
   vpSimulatorTurtleBot3Settings robot;
-  double noise = 0.035;   // px, standard deviation of an image point along each axis
-  double stated = 0.035;  // px, what the detector says of it
-  double frameRate = 12;  // Hz
+  double noise = 0.035;  // px, standard deviation of an image point along each axis
+  double stated = 0.035; // px, what the detector says of it
+  double frameRate = 12; // Hz
 };
 
 //! The paper's camera at 800 x 600 as its rig says, looking up from 0.19 m.

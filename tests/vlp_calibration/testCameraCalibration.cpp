@@ -38,8 +38,8 @@ TEST(CameraCalibration, RecoversViSPsModelOver50Seeds)
   Eigen::VectorXd exact(5);
   exact << truth.get_px(), truth.get_py(), truth.get_u0(), truth.get_v0(), truth.get_kud();
   for (int seed = 0; seed < seeds; ++seed) {
-    const vpCameraEstimate found =
-        vpCameraCalibration().solve(sights(vpBoard(), 15, 0.2, static_cast<unsigned int>(seed + 1)), width, height);
+    const vpCameraEstimate found = vpCameraCalibration().solve(
+        sights(vpBoard(), 15, 0.2, static_cast<unsigned int>(seed + 1)), width, height);
     ASSERT_TRUE(found.valid) << found.refusal;
     const Eigen::VectorXd error = found.values - exact;
     focal.push_back(std::max(std::abs(error(0)) / exact(0), std::abs(error(1)) / exact(1)));

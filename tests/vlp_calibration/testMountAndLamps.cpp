@@ -54,7 +54,8 @@ void expectNear(const vpBundleResult &found, const vpRigVector &truth)
 TEST(MountCalibration, SpinAndSquareTellAllNineParameters)
 {
   const World world = worldOf(usualStep());
-  const vpBundleResult found = vpMountCalibration().solve({drive(world, spin() + square(), 3)}, rig(), world.map);
+  const vpBundleResult found =
+      vpMountCalibration().solve({drive(world, spin() + square(), 3)}, rig(), world.map);
   expectNear(found, usualStep());
   EXPECT_TRUE(found.unseparated.empty());
   for (int i = 0; i < vpRigParameterCount; ++i) {
@@ -96,7 +97,8 @@ TEST(MountCalibration, AMountThatIsTurnedByARightAngleIsFound)
   vpRigVector step = vpRigVector::Zero();
   step(at(vpRigParameter::yaw)) = 90 * degree;
   const World world = worldOf(step);
-  const vpBundleResult found = vpMountCalibration().solve({drive(world, spin() + square(), 3)}, rig(), world.map);
+  const vpBundleResult found =
+      vpMountCalibration().solve({drive(world, spin() + square(), 3)}, rig(), world.map);
   ASSERT_TRUE(found.valid) << found.refusal;
   EXPECT_NEAR(found.step(at(vpRigParameter::yaw)), 90 * degree, 0.05 * degree);
 }
@@ -180,12 +182,14 @@ TEST(MountCalibration, StandardDeviationsAreHonestSlow)
     World world = worldOf(usualStep(), 0.2, static_cast<std::uint64_t>(seed));
     world.robot.slipSigma = 0;
     vpMountCalibration calibration;
-    const vpBundleResult found = calibration.solve({drive(world, spin() + square(), 100 + seed)}, rig(), world.map);
+    const vpBundleResult found =
+        calibration.solve({drive(world, spin() + square(), 100 + seed)}, rig(), world.map);
     ASSERT_TRUE(found.valid) << found.refusal;
     const vpRigVector error = found.step - usualStep();
     sum += error.dot(found.rigCovariance.inverse() * error);
   }
-  // Chi-square of 9 x 12 degrees: 99.9 % lie between 0.62 and 1.49 of its mean. Below, it was too careful by a third.
+  // Chi-square of 9 x 12 degrees: 99.9 % lie between 0.62 and 1.49 of its mean. Below, it was too careful by
+  // a third.
   EXPECT_GT(sum / (9 * seeds), 0.4);
   EXPECT_LT(sum / (9 * seeds), 1.49);
 }
@@ -241,7 +245,8 @@ TEST(LampSurvey, RefusesMeasuredLampsThatAreSwapped)
   std::swap(s.claimed.lamps[0].position, s.claimed.lamps[3].position);
   const vpSurveyResult found = s.survey.solve(s.runs, rig(), s.claimed);
   EXPECT_FALSE(found.bundle.valid);
-  EXPECT_NE(found.bundle.refusal.find("LED1 and LED4 are swapped"), std::string::npos) << found.bundle.refusal;
+  EXPECT_NE(found.bundle.refusal.find("LED1 and LED4 are swapped"), std::string::npos)
+      << found.bundle.refusal;
 }
 
 TEST(LampSurvey, ALampThatNobodySawKeepsItsPlace)

@@ -32,7 +32,8 @@ std::vector<cv::Point3f> gridOf(const vpBoard &board)
   std::vector<cv::Point3f> points;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
-      points.emplace_back(static_cast<float>(column * board.spacing), static_cast<float>(row * board.spacing), 0.f);
+      points.emplace_back(static_cast<float>(column * board.spacing), static_cast<float>(row * board.spacing),
+                          0.f);
     }
   }
   return points;
@@ -50,7 +51,8 @@ void findCharuco(const vpBoard &board, const cv::Mat &grey, vpBoardSight &sight)
     sight.pixels.clear();
     return;
   }
-  // OpenCV 4.5.4 to 4.12 shift what they refined by half a pixel (opencv issue 25539): refined once more it is right.
+  // OpenCV 4.5.4 to 4.12 shift what they refined by half a pixel (opencv issue 25539): refined once more it
+  // is right.
   double square = std::numeric_limits<double>::infinity(); // px, of the smallest
   for (size_t i = 0; i < sight.pixels.size(); ++i) {
     for (size_t k = 0; k < i; ++k) {
@@ -117,7 +119,8 @@ std::string vpBoard::sizeShown(const vpImage<unsigned char> &I) const
       meta.empty()) {
     return "";
   }
-  return std::to_string(std::max(meta.cols, meta.rows)) + "x" + std::to_string(std::min(meta.cols, meta.rows));
+  return std::to_string(std::max(meta.cols, meta.rows)) + "x" +
+         std::to_string(std::min(meta.cols, meta.rows));
 }
 
 cv::Mat_<unsigned char> vpBoard::pattern(int perSquare) const

@@ -46,8 +46,8 @@ public:
       const double x1 = x + (across ? a * radius : a * k), y1 = y + (across ? b * k : b * radius);
       const double x2 = x + (across ? a * k : a * radius), y2 = y + (across ? b * radius : b * k);
       const double x3 = x + (across ? 0 : a * radius), y3 = y + (across ? b * radius : 0);
-      m_operators += number(x1) + " " + number(y1) + " " + number(x2) + " " + number(y2) + " " + number(x3) + " " +
-                     number(y3) + " c\n";
+      m_operators += number(x1) + " " + number(y1) + " " + number(x2) + " " + number(y2) + " " + number(x3) +
+                     " " + number(y3) + " c\n";
     }
   }
 
@@ -55,7 +55,8 @@ public:
 
   void text(double x, double y, double size, const std::string &words)
   {
-    m_operators += "BT /F1 " + number(size) + " Tf " + number(x) + " " + number(y) + " Td (" + words + ") Tj ET\n";
+    m_operators +=
+        "BT /F1 " + number(size) + " Tf " + number(x) + " " + number(y) + " Td (" + words + ") Tj ET\n";
   }
 
   //! The file: catalogue, pages, page, content, font, and where each of them begins.
@@ -63,8 +64,8 @@ public:
   {
     const std::vector<std::string> objects = {
         "<< /Type /Catalog /Pages 2 0 R >>", "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
-        "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 " + number(width / point) + " " + number(height / point) +
-            "] /Contents 4 0 R /Resources << /Font << /F1 5 0 R >> >> >>",
+        "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 " + number(width / point) + " " +
+            number(height / point) + "] /Contents 4 0 R /Resources << /Font << /F1 5 0 R >> >> >>",
         "<< /Length " + std::to_string(m_operators.size()) + " >>\nstream\n" + m_operators + "endstream",
         "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica >>"};
     std::string pdf = "%PDF-1.4\n", table;
@@ -92,7 +93,8 @@ void drawPattern(Page &page, const cv::Mat_<unsigned char> &pattern, double pixe
         ++x;
       }
       if (x > first) {
-        page.rectangle(left + first * pixel, bottom + (pattern.rows - 1 - y) * pixel, (x - first) * pixel, pixel);
+        page.rectangle(left + first * pixel, bottom + (pattern.rows - 1 - y) * pixel, (x - first) * pixel,
+                       pixel);
       }
     }
   }

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <set>
 
-#include <Eigen/Eigenvalues>
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/manifold.h>
@@ -36,8 +35,8 @@ vpRigVector boundsOfFree()
 }
 
 /*!
-  By how much the variance of a sum of neighbouring residuals exceeds the sum of their variances: 1 where they are
-  independent. Their correlations are weighed by Bartlett's window (Newey and West 1987).
+  By how much the variance of a sum of neighbouring residuals exceeds the sum of their variances: 1 where they
+  are independent. Their correlations are weighed by Bartlett's window (Newey and West 1987).
 */
 double correlated(const std::vector<double> &residuals, const std::vector<size_t> &rows)
 {
@@ -119,10 +118,9 @@ void vpBundleProblem::addMotion()
     const vpBundleView &view = m_start.views[i];
     const Motion motion = m_runs[view.run].motion;
     if (motion == Motion::known) {
-      add(cost<3, 2, 1>(new vpPlaceResidual{view.start, m_runs[view.run].placeSigma,
-                                            m_runs[view.run].headingSigma}),
-          false, {m_poses[i].position, &m_poses[i].heading},
-          {Row::other, Row::other, Row::other});
+      add(cost<3, 2, 1>(
+              new vpPlaceResidual{view.start, m_runs[view.run].placeSigma, m_runs[view.run].headingSigma}),
+          false, {m_poses[i].position, &m_poses[i].heading}, {Row::other, Row::other, Row::other});
     }
     if (motion != Motion::wheels || i == 0 || m_start.views[i - 1].run != view.run) {
       continue;
@@ -154,10 +152,9 @@ void vpBundleProblem::addPriors()
             vpRigStep(m_start.rig, m_prior), m_bundle.rigSigma.cwiseMin(boundsOfFree())}),
         false, {m_rig.data()}, std::vector<Row>(vpRigParameterCount, Row::other));
   }
-  const Vector5d odometrySigma(
-      (Vector5d() << m_bundle.odometryScale, m_bundle.odometryDrift, m_bundle.odometryScale,
-       m_bundle.odometryTurnPerMetre, m_bundle.odometryBias)
-          .finished());
+  const Vector5d odometrySigma((Vector5d() << m_bundle.odometryScale, m_bundle.odometryDrift,
+                                m_bundle.odometryScale, m_bundle.odometryTurnPerMetre, m_bundle.odometryBias)
+                                   .finished());
   add(cost<5, 5>(new vpPriorResidual<5>{Vector5d::Zero(), odometrySigma}), false, {m_odometry.data()},
       std::vector<Row>(5, Row::other));
   if (m_bundle.wheelSeparation > 0) {
@@ -172,11 +169,9 @@ void vpBundleProblem::addPriors()
   }
   if (m_bundle.distance) {
     const vpLampDistance &known = *m_bundle.distance;
-    const Eigen::Vector3d way =
-        m_priorMap.lamps[known.to].position - m_priorMap.lamps[known.from].position;
-    add(cost<2, 3, 3>(
-            new vpDistanceResidual{known.metres, known.sigma, way.head<2>().normalized()}),
-        false, {m_lamps[known.from].data(), m_lamps[known.to].data()}, {Row::other, Row::other});
+    const Eigen::Vector3d way = m_priorMap.lamps[known.to].position - m_priorMap.lamps[known.from].position;
+    add(cost<2, 3, 3>(new vpDistanceResidual{known.metres, known.sigma, way.head<2>().normalized()}), false,
+        {m_lamps[known.from].data(), m_lamps[known.to].data()}, {Row::other, Row::other});
   }
 }
 
@@ -202,14 +197,15 @@ void vpBundleProblem::hold()
   if (m_bundle.distance) {
     m_problem->SetManifold(m_lamps[m_bundle.distance->from].data(), new ceres::SubsetManifold(3, {0, 1}));
   }
-  const bool moving = std::any_of(m_runs.begin(), m_runs.end(),
-                                  [](const vpLampRun &run) { return !run.odometry.empty(); });
+  const bool moving =
+      std::any_of(m_runs.begin(), m_runs.end(), [](const vpLampRun &run) { return !run.odometry.empty(); });
   if (!moving) {
     m_problem->SetParameterBlockConstant(m_odometry.data());
   } else { // wheels have no bias, and a gyro knows nothing of metres
     static const int turnPerMetre = 3, turnBias = 4;
-    m_problem->SetManifold(m_odometry.data(),
-                           new ceres::SubsetManifold(5, {m_bundle.wheelSeparation > 0 ? turnBias : turnPerMetre}));
+    m_problem->SetManifold(
+        m_odometry.data(),
+        new ceres::SubsetManifold(5, {m_bundle.wheelSeparation > 0 ? turnBias : turnPerMetre}));
   }
 }
 
@@ -236,7 +232,8 @@ bool vpBundleProblem::solve()
   ceres::Solver::Summary summary;
   ceres::Solve(options, m_problem.get(), &summary);
   static const double shortest = 0.1; // of the focal length: below, nothing is explained any more
-  return summary.IsSolutionUsable() && m_rig.allFinite() && 1 + m_rig(static_cast<int>(vpRigParameter::focal)) > shortest;
+  return summary.IsSolutionUsable() && m_rig.allFinite() &&
+         1 + m_rig(static_cast<int>(vpRigParameter::focal)) > shortest;
 }
 
 vpNormalEquations vpBundleProblem::equations()
@@ -289,8 +286,9 @@ bool vpBundleProblem::weigh()
       squares += equations.residuals()[row] * equations.residuals()[row];
     }
     static const double lowest = 1e-3; // of a stated sigma; observations without any noise
-    // Slip lasts longer than a step. Where images hardly question the motion its residuals are smooth by themselves.
-    const double questioned = std::clamp(2 * redundancy / static_cast<double>(rows.size()) - 1, 0.0, 1.0);
+    // Slip lasts longer than a step. Where images hardly question the motion its residuals are smooth by
+    // themselves.
+    const double questioned = std::clamp(4 * redundancy / static_cast<double>(rows.size()) - 2, 0.0, 1.0);
     const double more = series ? 1 + questioned * (correlated(equations.residuals(), rows) - 1) : 1;
     const double before = weight;
     weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12) / more), lowest, 1 / lowest);
@@ -302,23 +300,6 @@ bool vpBundleProblem::weigh()
   weighOne(Row::sideways, m_stepWeight(1), true);
   weighOne(Row::turn, m_stepWeight(2), true);
   return settled;
-}
-
-vpBundleResidual vpBundleProblem::residualOf(size_t view, size_t image) const
-{
-  const vpBundleView &entry = m_start.views[view];
-  const vpLampImage &seen = m_runs[entry.run].views[entry.view].images[image];
-  const vpImageResidual residual(m_start.rig, seen, entry.since[image], m_imageWeight);
-  vpBundleResidual out;
-  out.run = entry.run;
-  out.view = entry.view;
-  out.lamp = seen.lamp;
-  out.point = seen.point;
-  out.residual = residual.pixels(m_rig.data(), m_odometry.data(), m_poses[view].position,
-                                 &m_poses[view].heading, m_lamps[seen.lamp].data());
-  out.sigmas = m_imageWeight * (residual.whitening * out.residual).norm();
-  out.used = entry.used[image];
-  return out;
 }
 
 size_t vpBundleProblem::dropOutliers()
@@ -333,147 +314,6 @@ size_t vpBundleProblem::dropOutliers()
     }
   }
   return dropped;
-}
-
-vpRigMatrix vpBundleProblem::covarianceOf(const Eigen::MatrixXd &covariance) const
-{
-  vpRigMatrix all = vpRigMatrix::Zero();
-  for (size_t i = 0; i < m_freeRig.size(); ++i) {
-    for (size_t k = 0; k < m_freeRig.size(); ++k) {
-      all(m_freeRig[i], m_freeRig[k]) = covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
-    }
-  }
-  return all;
-}
-
-/*!
-  Directions in which the rig's parameters stay as good as unknown: eigenvectors of the information that the data
-  alone have of them, the image points taken for so uncertain that no number of them averages away what a detector
-  is off by systematically.
-*/
-std::vector<std::string> vpBundleProblem::unseparated()
-{
-  const auto count = static_cast<Eigen::Index>(m_freeRig.size());
-  if (count == 0) {
-    return {};
-  }
-  const double stated = m_imageWeight;
-  double variance = 0; // px^2, mean of the image points'
-  size_t points = 0;
-  for (const vpBundleView &view : m_start.views) {
-    for (const vpLampImage &image : m_runs[view.run].views[view.view].images) {
-      variance += 0.5 * image.covariance.trace();
-      ++points;
-    }
-  }
-  variance /= static_cast<double>(points) * stated * stated;
-  const double common = m_bundle.systematicError * m_bundle.systematicError * static_cast<double>(points);
-  m_imageWeight = stated / std::sqrt(1 + common / variance);
-  Eigen::MatrixXd information = equations().information();
-  m_imageWeight = stated;
-
-  // Priors of the rig take no part; odometry's errors and lamps are eliminated.
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double prior = m_bundle.rigSigma(m_freeRig[static_cast<size_t>(i)]);
-    information(i, i) -= std::isinf(prior) ? 0 : 1 / (prior * prior);
-  }
-  Eigen::MatrixXd own = information.topLeftCorner(count, count);
-  const Eigen::Index others = information.rows() - count;
-  if (others > 0) {
-    const Eigen::MatrixXd across = information.topRightCorner(count, others);
-    const Eigen::MatrixXd rest = information.bottomRightCorner(others, others);
-    own -= across * vpInverseOf(rest) * across.transpose();
-  }
-  Eigen::VectorXd coarse(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    coarse(i) = vpRigParameterInfo::all()[static_cast<size_t>(m_freeRig[static_cast<size_t>(i)])].coarse;
-  }
-  const Eigen::MatrixXd scaled = coarse.asDiagonal() * own * coarse.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  std::vector<std::string> found;
-  for (Eigen::Index k = 0; k < count; ++k) {
-    if (eigen.eigenvalues()(k) >= 1) {
-      continue;
-    }
-    std::string names;
-    const Eigen::VectorXd direction = eigen.eigenvectors().col(k);
-    static const double share = 0.3; // of the direction's length: what makes part of it
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (std::abs(direction(i)) > share) {
-        names += (names.empty() ? "" : " with ") +
-                 vpRigParameterInfo::all()[static_cast<size_t>(m_freeRig[static_cast<size_t>(i)])].name;
-      }
-    }
-    if (std::find(found.begin(), found.end(), names) == found.end()) {
-      found.push_back(names);
-    }
-  }
-  return found;
-}
-
-vpBundleResult vpBundleProblem::result()
-{
-  vpBundleResult result;
-  result.unseparated = unseparated();
-  const Eigen::MatrixXd covariance = vpInverseOf(equations().information());
-
-  result.rig = vpMovedRig(m_start.rig, m_rig);
-  result.step = vpRigStep(m_prior, result.rig);
-  result.rigCovariance = covarianceOf(covariance);
-  const vpRigVector sigma = result.rigCovariance.diagonal().cwiseMax(0).cwiseSqrt();
-  for (int i = 0; i < 3; ++i) {
-    if (m_bundle.rigSigma(i) > 0) {
-      result.rig.translationSigma(i) = sigma(i);
-    }
-    if (m_bundle.rigSigma(i + 3) > 0) {
-      result.rig.rotationSigma(i) = sigma(i + 3);
-    }
-  }
-
-  result.map = m_priorMap;
-  result.lampCovariance.assign(m_lamps.size(), Eigen::Matrix3d::Zero());
-  result.lampImages.assign(m_lamps.size(), 0);
-  auto column = static_cast<Eigen::Index>(m_freeRig.size());
-  column += m_problem->IsParameterBlockConstant(m_odometry.data()) ? 0 : m_problem->ParameterBlockTangentSize(m_odometry.data());
-  for (size_t k = 0; k < m_lamps.size(); ++k) {
-    const double *block = m_lamps[k].data();
-    if (!m_problem->HasParameterBlock(block)) {
-      continue;
-    }
-    result.map.lamps[k].position = m_lamps[k];
-    if (m_problem->IsParameterBlockConstant(block)) {
-      continue;
-    }
-    const int size = m_problem->ParameterBlockTangentSize(block);
-    result.lampCovariance[k].bottomRightCorner(size, size) = covariance.block(column, column, size, size);
-    column += size;
-    result.map.lamps[k].positionSigma = std::sqrt(std::max(0.0, result.lampCovariance[k].trace() / 3));
-  }
-
-  result.imageFactor = 1 / m_imageWeight;
-  result.odometry = {m_odometry(0), m_odometry(1), m_odometry(2), m_odometry(3), m_odometry(4)};
-  result.poses.resize(m_runs.size());
-  double squares = 0;
-  size_t count = 0;
-  for (size_t i = 0; i < m_poses.size(); ++i) {
-    const vpBundleView &view = m_start.views[i];
-    vpTrajectory &poses = result.poses[view.run];
-    if (poses.empty() || view.time > poses.poses().back().timestamp) {
-      poses.add(view.time, vpPoseOf(Eigen::Vector3d(m_poses[i].position[0], m_poses[i].position[1], 0),
-                                    Eigen::Vector3d(0, 0, m_poses[i].heading)));
-    }
-    for (size_t k = 0; k < view.used.size(); ++k) {
-      result.residuals.push_back(residualOf(i, k));
-      if (view.used[k]) {
-        ++result.lampImages[result.residuals.back().lamp];
-        squares += result.residuals.back().residual.squaredNorm();
-        count += 2;
-      }
-    }
-  }
-  result.rms = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
-  result.valid = true;
-  return result;
 }
 
 END_VISP_NAMESPACE

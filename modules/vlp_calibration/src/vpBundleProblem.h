@@ -67,7 +67,7 @@ private:
   const vpLampMap &m_priorMap;
   vpBundleStart &m_start;
 
-  vpRigVector m_rig;               // step from the start's rig
+  vpRigVector m_rig;                      // step from the start's rig
   Vector5d m_odometry = Vector5d::Zero(); // as vpOdometryError
   std::vector<Eigen::Vector3d> m_lamps;
   std::deque<Eigen::Vector2d> m_positions; // a deque: its places in memory stay

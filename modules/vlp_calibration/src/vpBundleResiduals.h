@@ -8,9 +8,9 @@
 /*!
   \file vpBundleResiduals.h
   The residuals of vpLampBundle, for Ceres' automatic derivatives. Parameter blocks: the step of the rig (as
-  vpRigParameter), the odometry's errors (as vpOdometryError), position (m) and heading (rad) of the base, position of
-  a lamp (m). All residuals are in standard deviations, times a
-  \e weight that is shared by all of a kind and changes between solutions.
+  vpRigParameter), the odometry's errors (as vpOdometryError), position (m) and heading (rad) of the base,
+  position of a lamp (m). All residuals are in standard deviations, times a \e weight that is shared by all of
+  a kind and changes between solutions.
 */
 
 #include <ceres/rotation.h>
@@ -39,10 +39,10 @@ Eigen::Matrix<T, 3, 1> vpTrueStep(const vpPlanarStep &step, const T *odometry)
 struct vpImageResidual {
   const vpVlpRig *rig;
   vpLampImage image;
-  vpPlanarStep since;          // from the view's pose to the image's own time
-  Eigen::Matrix2d whitening;   // 1/px
-  Eigen::Matrix3d cRb;         // of the rig as given
-  Eigen::Vector3d btc;         // m, likewise
+  vpPlanarStep since;        // from the view's pose to the image's own time
+  Eigen::Matrix2d whitening; // 1/px
+  Eigen::Matrix3d cRb;       // of the rig as given
+  Eigen::Vector3d btc;       // m, likewise
   const double *weight;
 
   vpImageResidual(const vpVlpRig &rigGiven, const vpLampImage &seen, const vpPlanarStep &motion,
@@ -75,7 +75,8 @@ struct vpImageResidual {
     ceres::AngleAxisRotatePoint(back, b.data(), upright.data());
     const Vector inCamera = cRb.cast<T>() * upright;
     const Eigen::Matrix<T, 2, 1> ray = vpPixelRay(rig->camera, image.point, step[6], step[7], step[8]);
-    // In pixels of the camera that is looked for: in those of the one given, a longer lens would make errors smaller.
+    // In pixels of the camera that is looked for: in those of the one given, a longer lens would make errors
+    // smaller.
     const T longer = T(1.0) + step[8];
     return {T(rig->camera.get_px()) * longer * (ray(0) - inCamera(0) / inCamera(2)),
             T(rig->camera.get_py()) * longer * (ray(1) - inCamera(1) / inCamera(2))};
@@ -127,8 +128,8 @@ struct vpRollingResidual {
     using std::cos;
     using std::sin;
     const T half = T(0.5) * (heading0[0] + heading1[0]);
-    residual[0] = T((*weight)(1) / sigma) * (-sin(half) * (position1[0] - position0[0]) +
-                                             cos(half) * (position1[1] - position0[1]));
+    residual[0] = T((*weight)(1) / sigma) *
+                  (-sin(half) * (position1[0] - position0[0]) + cos(half) * (position1[1] - position0[1]));
     return true;
   }
 };

@@ -20,8 +20,9 @@ namespace
 {
 using Motion = vpLampRun::Motion;
 
-const char *const noStart = "no frame shows two lamps whose places are known; begin where two of them are in view, "
-                            "and check with vlp-locate --overlay that they are recognised";
+const char *const noStart =
+    "no frame shows two lamps whose places are known; begin where two of them are in view, "
+    "and check with vlp-locate --overlay that they are recognised";
 
 bool believed(const vpLampBundle &bundle, size_t lamp)
 {
@@ -181,8 +182,8 @@ void vpBundleStart::dropUnplaced()
 }
 
 /*!
-  A mount whose heading is far off: a base that rolls shows it by the way that it goes. The rig is turned by the mean
-  angle between that way and its heading.
+  A mount whose heading is far off: a base that rolls shows it by the way that it goes. The rig is turned by
+  the mean angle between that way and its heading.
 */
 void vpBundleStart::turnHeading(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs)
 {
@@ -275,7 +276,8 @@ void vpBundleStart::alignToDistance(const vpLampBundle &bundle, const vpLampMap 
   }
 }
 
-//! How the base moves from each view's pose to its images: by odometry, else as fast as the views around show.
+//! How the base moves from each view's pose to its images: by odometry, else as fast as the views around
+//! show.
 void vpBundleStart::followImages(const std::vector<vpLampRun> &runs)
 {
   for (size_t i = 0; i < views.size(); ++i) {
@@ -292,7 +294,8 @@ void vpBundleStart::followImages(const std::vector<vpLampRun> &runs)
     const bool spins = run.motion == Motion::spin;
     for (const vpLampImage &image : run.views[view.view].images) {
       const double since = image.time - view.time;
-      const auto step = run.motion == Motion::known ? std::nullopt : paths[view.run].step(view.time, image.time);
+      const auto step =
+          run.motion == Motion::known ? std::nullopt : paths[view.run].step(view.time, image.time);
       vpPlanarStep by{since, 0, 0, since * rate(2), 0, 0, 0};
       if (step) {
         by = *step;

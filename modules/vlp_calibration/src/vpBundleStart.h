@@ -16,17 +16,18 @@ BEGIN_VISP_NAMESPACE
 
 //! A view as the bundle adjustment uses it.
 struct vpBundleView {
-  size_t run = 0, view = 0;           // indices into what was given
-  double time = 0;                    // s, of its pose
-  vpPlanarPose start;                 // of its pose
-  std::vector<vpPlanarStep> since;    // to each of its images
-  std::vector<bool> used;             // each of its images
+  size_t run = 0, view = 0;        // indices into what was given
+  double time = 0;                 // s, of its pose
+  vpPlanarPose start;              // of its pose
+  std::vector<vpPlanarStep> since; // to each of its images
+  std::vector<bool> used;          // each of its images
 };
 
 /*!
-  Where Levenberg-Marquardt starts from: poses of the frames and places of lamps that are not believed. A frame that
-  shows two believed lamps has its pose from these (vpManyLampSolver); others follow from their neighbours along the
-  odometry. Lamps that are not believed are where the rays from these poses come nearest to each other.
+  Where Levenberg-Marquardt starts from: poses of the frames and places of lamps that are not believed. A
+  frame that shows two believed lamps has its pose from these (vpManyLampSolver); others follow from their
+  neighbours along the odometry. Lamps that are not believed are where the rays from these poses come nearest
+  to each other.
 */
 struct vpBundleStart {
   std::string refusal; // one line, where there is no start

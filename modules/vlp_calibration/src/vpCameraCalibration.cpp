@@ -83,7 +83,8 @@ struct PointResidual {
     T c[3];
     ceres::AngleAxisRotatePoint(pose, point, c);
     const T z = c[2] + pose[5];
-    const Eigen::Matrix<T, 2, 1> at = vpPixelOf<model>(parameters, T((c[0] + pose[3]) / z), T((c[1] + pose[4]) / z));
+    const Eigen::Matrix<T, 2, 1> at =
+        vpPixelOf<model>(parameters, T((c[0] + pose[3]) / z), T((c[1] + pose[4]) / z));
     residual[0] = T(pixel.x()) - at(0);
     residual[1] = T(pixel.y()) - at(1);
     return true;
@@ -104,8 +105,8 @@ bool adjust(const std::vector<vpBoardSight> &sights, Start &start, vpCameraEstim
       const cv::Point2f &pixel = sights[i].pixels[k];
       auto *residual = new PointResidual<model>{{board.x, board.y, board.z}, {pixel.x, pixel.y}};
       blocks.push_back(problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<PointResidual<model>, 2, vpParametersOf(model), 6>(residual), nullptr,
-          start.parameters.data(), start.poses[i].data()));
+          new ceres::AutoDiffCostFunction<PointResidual<model>, 2, vpParametersOf(model), 6>(residual),
+          nullptr, start.parameters.data(), start.poses[i].data()));
     }
   }
   ceres::Solver::Options options;
@@ -124,7 +125,8 @@ bool adjust(const std::vector<vpBoardSight> &sights, Start &start, vpCameraEstim
   for (const double residual : residuals) {
     squares += residual * residual;
   }
-  const double freedom = static_cast<double>(residuals.size()) - vpParametersOf(model) - 6. * static_cast<double>(poses.size());
+  const double freedom =
+      static_cast<double>(residuals.size()) - vpParametersOf(model) - 6. * static_cast<double>(poses.size());
   estimate.values = Eigen::Map<Eigen::VectorXd>(start.parameters.data(), vpParametersOf(model));
   estimate.covariance = squares / std::max(1.0, freedom) * vpInverseOf(equations.information());
   estimate.rms = std::sqrt(squares / static_cast<double>(residuals.size()));
@@ -133,7 +135,8 @@ bool adjust(const std::vector<vpBoardSight> &sights, Start &start, vpCameraEstim
     vpCalibratedView view;
     view.picture = sights[i].picture;
     const Eigen::Vector3d turn(start.poses[i][0], start.poses[i][1], start.poses[i][2]);
-    const Eigen::Matrix3d R(Eigen::AngleAxisd(turn.norm(), turn.norm() > 0 ? Eigen::Vector3d(turn.normalized()) : Eigen::Vector3d::UnitX()));
+    const Eigen::Matrix3d R(Eigen::AngleAxisd(
+        turn.norm(), turn.norm() > 0 ? Eigen::Vector3d(turn.normalized()) : Eigen::Vector3d::UnitX()));
     view.tilt = std::acos(std::min(1.0, std::abs(R(2, 2))));
     double own = 0;
     for (const cv::Point2f &pixel : sights[i].pixels) {
@@ -149,7 +152,8 @@ bool adjust(const std::vector<vpBoardSight> &sights, Start &start, vpCameraEstim
 }
 
 //! kdu that undoes kud over the picture, by least squares over a grid of its pixels.
-double wayBack(double px, double py, double u0, double v0, double kud, unsigned int width, unsigned int height)
+double wayBack(double px, double py, double u0, double v0, double kud, unsigned int width,
+               unsigned int height)
 {
   double product = 0, square = 0;
   static const int steps = 40;
@@ -186,11 +190,11 @@ vpCameraParameters cameraOf(Model model, const Eigen::VectorXd &p, unsigned int 
 std::vector<std::string> namesOf(Model model)
 {
   std::vector<std::string> names = {"px", "py", "u0", "v0"};
-  const std::vector<std::string> more = model == Model::visp            ? std::vector<std::string>{"kud"}
-                                        : model == Model::kannalaBrandt ? std::vector<std::string>{"k1", "k2", "k3", "k4"}
-                                        : model == Model::opencv
-                                            ? std::vector<std::string>{"k1", "k2", "p1", "p2", "k3"}
-                                            : std::vector<std::string>{};
+  const std::vector<std::string> more =
+      model == Model::visp            ? std::vector<std::string>{"kud"}
+      : model == Model::kannalaBrandt ? std::vector<std::string>{"k1", "k2", "k3", "k4"}
+      : model == Model::opencv        ? std::vector<std::string>{"k1", "k2", "p1", "p2", "k3"}
+                                      : std::vector<std::string>{};
   names.insert(names.end(), more.begin(), more.end());
   return names;
 }
@@ -220,8 +224,8 @@ size_t waysOf(const std::vector<vpBoardSight> &sights)
 }
 } // namespace
 
-bool vpCameraCalibration::fit(const std::vector<vpBoardSight> &sights, unsigned int width, unsigned int height,
-                              vpCameraEstimate &estimate) const
+bool vpCameraCalibration::fit(const std::vector<vpBoardSight> &sights, unsigned int width,
+                              unsigned int height, vpCameraEstimate &estimate) const
 {
   estimate = vpCameraEstimate();
   bool good = false;
@@ -254,15 +258,16 @@ bool vpCameraCalibration::fit(const std::vector<vpBoardSight> &sights, unsigned 
 std::string vpCameraCalibration::degenerate(const vpCameraEstimate &estimate, unsigned int width,
                                             unsigned int height) const
 {
-  static const std::string tilted =
-      "take pictures with the board tilted by 20 to 40 degrees, to the left, right, front and back, up to the "
-      "corners of the picture";
-  const double px = estimate.values(0), py = estimate.values(1), u0 = estimate.values(2), v0 = estimate.values(3);
+  static const std::string tilted = "take pictures with the board tilted by 20 to 40 degrees, to the left, "
+                                    "right, front and back, up to the "
+                                    "corners of the picture";
+  const double px = estimate.values(0), py = estimate.values(1), u0 = estimate.values(2),
+               v0 = estimate.values(3);
   const auto sigma = [&](int i) { return std::sqrt(std::max(0.0, estimate.covariance(i, i))); };
   if (!(px > 0 && py > 0) || !(u0 > 0 && u0 < width && v0 > 0 && v0 < height)) {
     return "the pictures lead to a focal length of " + vpNumberText(std::round(px)) +
-           " px and a principal point at (" + vpNumberText(std::round(u0)) + ", " + vpNumberText(std::round(v0)) +
-           "), which cannot be: " + tilted;
+           " px and a principal point at (" + vpNumberText(std::round(u0)) + ", " +
+           vpNumberText(std::round(v0)) + "), which cannot be: " + tilted;
   }
   if (!(sigma(0) < worstFocal * px && sigma(1) < worstFocal * py)) {
     return "the focal length stays uncertain by " + vpNumberText(std::round(1000 * sigma(0) / px) / 10) +
@@ -287,9 +292,9 @@ vpCameraEstimate vpCameraCalibration::solve(const std::vector<vpBoardSight> &sig
     }
   }
   if (used.size() < fewestViews) {
-    estimate.refusal = "too few pictures: " + std::to_string(used.size()) + " of " + std::to_string(sights.size()) +
-                       " show the board, expected " + std::to_string(fewestViews) +
-                       " or more, better 15, each from another side";
+    estimate.refusal = "too few pictures: " + std::to_string(used.size()) + " of " +
+                       std::to_string(sights.size()) + " show the board, expected " +
+                       std::to_string(fewestViews) + " or more, better 15, each from another side";
     return estimate;
   }
   static const size_t fewestWays = 3; // Zhang: two of a flat board do, without errors
@@ -299,7 +304,8 @@ vpCameraEstimate vpCameraCalibration::solve(const std::vector<vpBoardSight> &sig
                        " or more, better 15; move and tilt it between the pictures";
     return estimate;
   }
-  const std::string noEnd = "the fit comes to no end; take other pictures, with the board tilted by 20 to 40 degrees";
+  const std::string noEnd =
+      "the fit comes to no end; take other pictures, with the board tilted by 20 to 40 degrees";
   if (!fit(used, width, height, estimate)) {
     estimate.refusal = noEnd;
     return estimate;
@@ -323,7 +329,8 @@ vpCameraEstimate vpCameraCalibration::solve(const std::vector<vpBoardSight> &sig
     }
   }
   if (!left.empty() && (good.size() < fewestViews || !fit(good, width, height, estimate))) {
-    estimate.refusal = good.size() < fewestViews ? "too few pictures without those far off the others" : noEnd;
+    estimate.refusal =
+        good.size() < fewestViews ? "too few pictures without those far off the others" : noEnd;
     return estimate;
   }
   estimate.refusal = degenerate(estimate, width, height);
@@ -363,13 +370,13 @@ std::string vpCameraInfoYaml(const vpCameraEstimate &estimate, Model model, cons
     }
   }
   const auto matrix = [&](const std::string &key, int rows, int columns, const std::vector<double> &values) {
-    return key + ":\n  rows: " + std::to_string(rows) + "\n  cols: " + std::to_string(columns) + "\n  data: [" +
-           row(values) + "]\n";
+    return key + ":\n  rows: " + std::to_string(rows) + "\n  cols: " + std::to_string(columns) +
+           "\n  data: [" + row(values) + "]\n";
   };
   return "image_width: " + std::to_string(width) + "\nimage_height: " + std::to_string(height) +
          "\ncamera_name: " + name + "\n" +
-         matrix("camera_matrix", 3, 3, {p(0), 0, p(2), 0, p(1), p(3), 0, 0, 1}) + "distortion_model: " +
-         (model == Model::kannalaBrandt ? "equidistant" : "plumb_bob") + "\n" +
+         matrix("camera_matrix", 3, 3, {p(0), 0, p(2), 0, p(1), p(3), 0, 0, 1}) +
+         "distortion_model: " + (model == Model::kannalaBrandt ? "equidistant" : "plumb_bob") + "\n" +
          matrix("distortion_coefficients", 1, static_cast<int>(distortion.size()), distortion) +
          matrix("rectification_matrix", 3, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1}) +
          matrix("projection_matrix", 3, 4, {p(0), 0, p(2), 0, 0, p(1), p(3), 0, 0, 0, 1, 0});

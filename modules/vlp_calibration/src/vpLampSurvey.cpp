@@ -20,7 +20,8 @@ namespace
 {
 using State = vpSurveyedLamp::State;
 
-//! m, root mean square distance of the lamps that were found from where the map has them; infinite without any.
+//! m, root mean square distance of the lamps that were found from where the map has them; infinite without
+//! any.
 double offsetOf(const std::vector<vpSurveyedLamp> &lamps)
 {
   double squares = 0;
@@ -31,7 +32,8 @@ double offsetOf(const std::vector<vpSurveyedLamp> &lamps)
       ++count;
     }
   }
-  return count == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(squares / static_cast<double>(count));
+  return count == 0 ? std::numeric_limits<double>::infinity()
+                    : std::sqrt(squares / static_cast<double>(count));
 }
 } // namespace
 
@@ -47,7 +49,8 @@ vpBundleResult vpLampSurvey::adjusted(const std::vector<vpLampRun> &runs, const 
   return own.solve(runs, rig, map);
 }
 
-std::vector<vpSurveyedLamp> vpLampSurvey::heldAgainst(const vpLampMap &map, const vpBundleResult &result) const
+std::vector<vpSurveyedLamp> vpLampSurvey::heldAgainst(const vpLampMap &map,
+                                                      const vpBundleResult &result) const
 {
   std::vector<vpSurveyedLamp> lamps(map.lamps.size());
   for (size_t k = 0; k < lamps.size(); ++k) {
@@ -72,8 +75,8 @@ std::vector<vpSurveyedLamp> vpLampSurvey::heldAgainst(const vpLampMap &map, cons
   return lamps;
 }
 
-//! With two measured lamps exchanged all is turned by half a turn, which explains the pictures as well: only the
-//! other lamps show it. \param offset m, how far these are from where the map has them.
+//! With two measured lamps exchanged all is turned by half a turn, which explains the pictures as well: only
+//! the other lamps show it. \param offset m, how far these are from where the map has them.
 std::string vpLampSurvey::swappedLamps(const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
                                        const vpLampMap &map, double offset) const
 {
@@ -93,7 +96,8 @@ std::string vpLampSurvey::swappedLamps(const std::vector<vpLampRun> &runs, const
     return "";
   }
   return "lamps " + a.id + " and " + b.id +
-         " are swapped: with their places exchanged the other lamps are where the map has them; correct position_m";
+         " are swapped: with their places exchanged the other lamps are where the map has them; correct "
+         "position_m";
 }
 
 vpSurveyResult vpLampSurvey::solve(const std::vector<vpLampRun> &runs, const vpVlpRig &rig,

@@ -34,8 +34,8 @@ bool explains(const vpBundleResult &result)
 } // namespace
 
 /*!
-  The two lamps of the map that had better be exchanged, in one line; empty where no two are. Each pair is tried on
-  a few frames, each of which has a pose of its own.
+  The two lamps of the map that had better be exchanged, in one line; empty where no two are. Each pair is
+  tried on a few frames, each of which has a pose of its own.
 */
 std::string vpMountCalibration::swappedLamps(const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
                                              const vpLampMap &map) const
@@ -83,12 +83,12 @@ vpBundleResult vpMountCalibration::solve(const std::vector<vpLampRun> &runs, con
   result = own.solve(runs, rig, map);
   if (!explains(result)) {
     const std::string swapped = swappedLamps(runs, rig, map);
-    const std::string plain = result.valid
-                                  ? "the map does not explain the pictures: " +
-                                        vpNumberText(std::round(10 * result.rms) / 10) + " px rms and " +
-                                        vpNumberText(std::round(100 * vpOutlierShare(result))) +
-                                        " % outliers remain; check places and ids of the lamps in the map"
-                                  : result.refusal;
+    const std::string plain =
+        result.valid
+            ? "the map does not explain the pictures: " + vpNumberText(std::round(10 * result.rms) / 10) +
+                  " px rms and " + vpNumberText(std::round(100 * vpOutlierShare(result))) +
+                  " % outliers remain; check places and ids of the lamps in the map"
+            : result.refusal;
     result.valid = false;
     result.refusal = swapped.empty() ? plain : swapped;
     return result;
@@ -104,7 +104,8 @@ vpBundleResult vpMountCalibration::solve(const std::vector<vpLampRun> &runs, con
     bool free = false;
     for (int i = 0; i < vpRigParameterCount; ++i) {
       const std::string &name = vpRigParameterInfo::all()[static_cast<size_t>(i)].name;
-      free = free || (std::isinf(bundle.rigSigma(i)) && (" " + names + " ").find(" " + name + " ") != std::string::npos);
+      free = free || (std::isinf(bundle.rigSigma(i)) &&
+                      (" " + names + " ").find(" " + name + " ") != std::string::npos);
     }
     bool held = false; // by a prior on one of them
     for (int i = 0; i < vpRigParameterCount; ++i) {
@@ -118,9 +119,10 @@ vpBundleResult vpMountCalibration::solve(const std::vector<vpLampRun> &runs, con
   }
   if (!open.empty()) {
     result.valid = false;
-    result.refusal = "the pictures do not tell apart " + listed(open) +
-                     "; hold what is known (--fix u0,v0,focal after vlp-calibrate camera), give a prior (--prior "
-                     "u0=1), hang a lamp at another height, or spin and drive more";
+    result.refusal =
+        "the pictures do not tell apart " + listed(open) +
+        "; hold what is known (--fix u0,v0,focal after vlp-calibrate camera), give a prior (--prior "
+        "u0=1), hang a lamp at another height, or spin and drive more";
   }
   return result;
 }

@@ -15,8 +15,9 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   The normal equations of a Ceres problem at its present values, robust losses applied: what is known of a few
-  blocks of interest once the many others (poses, say) are eliminated, and how much freedom residuals have left.
-  Unlike ceres::Covariance it holds where the blocks of interest are not determined: that is what is to be found out.
+  blocks of interest once the many others (poses, say) are eliminated, and how much freedom residuals have
+  left. Unlike ceres::Covariance it holds where the blocks of interest are not determined: that is what is to
+  be found out.
 */
 class vpNormalEquations
 {

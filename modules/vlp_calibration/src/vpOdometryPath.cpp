@@ -69,13 +69,9 @@ std::optional<vpPlanarStep> vpOdometryPath::step(double from, double until) cons
   const Point a = at(from), b = at(until);
   const double c = std::cos(a.pose(2)), s = std::sin(a.pose(2));
   const Eigen::Vector2d way = (b.pose - a.pose).head<2>();
-  return vpPlanarStep{until - from,
-                      c * way.x() + s * way.y(),
-                      -s * way.x() + c * way.y(),
-                      b.pose(2) - a.pose(2),
-                      b.along - a.along,
-                      std::abs(b.length - a.length),
-                      std::abs(b.turned - a.turned)};
+  return vpPlanarStep{
+      until - from,      c * way.x() + s * way.y(),     -s * way.x() + c * way.y(),   b.pose(2) - a.pose(2),
+      b.along - a.along, std::abs(b.length - a.length), std::abs(b.turned - a.turned)};
 }
 
 END_VISP_NAMESPACE

@@ -44,7 +44,7 @@ private:
     double time;
     vpPlanarPose pose;
     double along, length, turned; // since the start
-    double v, w;           // of the interval that ends here
+    double v, w;                  // of the interval that ends here
   };
   Point at(double time) const;
 

@@ -39,8 +39,8 @@ T vpKannalaBrandtAngle(const T &distorted, const std::vector<double> &k)
 }
 
 /*!
-  Ray (normalised coordinates, without distortion) of the pixel (u, v) of \e camera with its principal point moved
-  by du, dv (px) and its focal length longer by the share df.
+  Ray (normalised coordinates, without distortion) of the pixel (u, v) of \e camera with its principal point
+  moved by du, dv (px) and its focal length longer by the share df.
 */
 template <typename T>
 Eigen::Matrix<T, 2, 1> vpPixelRay(const vpCameraParameters &camera, const Eigen::Vector2d &pixel, const T &du,

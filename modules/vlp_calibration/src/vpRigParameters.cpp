@@ -58,10 +58,11 @@ vpVlpRig vpMovedRig(const vpVlpRig &rig, const vpRigVector &step)
   const double angle = turn.norm();
   const Eigen::Quaterniond by(angle > 0 ? Eigen::AngleAxisd(angle, turn / angle)
                                         : Eigen::AngleAxisd(0, Eigen::Vector3d::UnitX()));
-  moved.bMc = vpPoseOf(Eigen::Vector3d(translationOf(rig) + step.head<3>()), Eigen::Quaterniond(by * vpQuaternionOf(rig.bMc)));
+  moved.bMc = vpPoseOf(Eigen::Vector3d(translationOf(rig) + step.head<3>()),
+                       Eigen::Quaterniond(by * vpQuaternionOf(rig.bMc)));
   moved.camera = vpPictureResize::withAxes(rig.camera, rig.camera.get_px() * (1 + step(8)),
-                                           rig.camera.get_py() * (1 + step(8)),
-                                           rig.camera.get_u0() + step(6), rig.camera.get_v0() + step(7));
+                                           rig.camera.get_py() * (1 + step(8)), rig.camera.get_u0() + step(6),
+                                           rig.camera.get_v0() + step(7));
   return moved;
 }
 

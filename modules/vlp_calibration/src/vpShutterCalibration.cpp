@@ -122,8 +122,8 @@ size_t vpShutterCalibration::lampOf(double cycles, double relativeSigma, double 
   for (size_t k = 0; k < m_map.lamps.size(); ++k) {
     const vpLamp &lamp = m_map.lamps[k];
     const double off = std::log(cycles / (lamp.modulation.frequency * rowTime));
-    const double sigma =
-        std::sqrt(relativeSigma * relativeSigma + std::pow(1e-6 * lamp.oscillatorPpm, 2) + rounding * rounding);
+    const double sigma = std::sqrt(relativeSigma * relativeSigma + std::pow(1e-6 * lamp.oscillatorPpm, 2) +
+                                   rounding * rounding);
     if (std::abs(off) / sigma < least) {
       least = std::abs(off) / sigma;
       best = k;
@@ -153,8 +153,7 @@ double vpShutterCalibration::likeliestRowTime(const std::vector<Stripes> &stripe
       Vote vote{seen.cycles / lamp.modulation.frequency, 0};
       for (const Stripes &other : stripes) {
         // The voter is off as well.
-        const double relative =
-            std::hypot(other.cyclesSigma / other.cycles, seen.cyclesSigma / seen.cycles);
+        const double relative = std::hypot(other.cyclesSigma / other.cycles, seen.cyclesSigma / seen.cycles);
         vote.explained += lampOf(other.cycles, relative, vote.rowTime) != none;
       }
       most = std::max(most, vote.explained);
@@ -203,7 +202,8 @@ std::vector<vpShutterSight> vpShutterCalibration::sightsAt(double rowTime,
     sight.sigma = seen.cyclesSigma / lamp.modulation.frequency;
     sight.exposure = seen.exposure * sight.rowTime;
     sight.exposureSigma = seen.exposureSigma * sight.rowTime;
-    // Two boxes, the pulse and the exposure: which is which, the lamp's duty tells, or else the longer is the pulse.
+    // Two boxes, the pulse and the exposure: which is which, the lamp's duty tells, or else the longer is the
+    // pulse.
     if (lamp.modulation.kind == vpModulation::Kind::pwm) {
       const double exposed = seen.exposure * seen.cycles, pulse = seen.duty; // periods
       const bool swapped = lamp.modulation.duty ? std::abs(exposed - *lamp.modulation.duty) <
@@ -274,7 +274,8 @@ vpShutterEstimate vpShutterCalibration::solve() const
   estimate.alongColumns = best.alongColumns;
   if (best.stripes.empty()) {
     estimate.refusal =
-        "no stripes of a blinking lamp along rows or columns; bring the camera nearer to the lamp, shorten the "
+        "no stripes of a blinking lamp along rows or columns; bring the camera nearer to the lamp, shorten "
+        "the "
         "exposure below a fifth of the lamp's period, and see that the lamp is not white all over";
     return estimate;
   }

@@ -25,13 +25,13 @@ struct VISP_EXPORT vpBoardSight {
 struct VISP_EXPORT vpBoard {
   enum class Kind {
     chessboard, //!< has to be seen whole
-    charuco,    //!< a chessboard with markers in its white squares: may be cut, so that it reaches the corners
-    circles     //!< black discs on a square grid; has to be seen whole
+    charuco, //!< a chessboard with markers in its white squares: may be cut, so that it reaches the corners
+    circles  //!< black discs on a square grid; has to be seen whole
   };
 
   Kind kind = Kind::chessboard;
-  int columns = 9;       // inner corners, or circles, along the longer side
-  int rows = 6;          // and along the other
+  int columns = 9;        // inner corners, or circles, along the longer side
+  int rows = 6;           // and along the other
   double spacing = 0.025; // m, side of a square, or from circle to circle
 
   //! \throw vpException (badValue) with one line: fewer than 3 either way, or a spacing that is not above 0.
@@ -41,8 +41,8 @@ struct VISP_EXPORT vpBoard {
   vpBoardSight find(const vpImage<unsigned char> &I, const std::string &name) const;
 
   /*!
-    What a picture shows in its place: the size of another chessboard, `8x5`, or empty. For messages: a wrong size
-    is the usual reason why none is found.
+    What a picture shows in its place: the size of another chessboard, `8x5`, or empty. For messages: a wrong
+    size is the usual reason why none is found.
   */
   std::string sizeShown(const vpImage<unsigned char> &I) const;
 
@@ -50,8 +50,8 @@ struct VISP_EXPORT vpBoard {
   std::string size() const { return std::to_string(columns) + "x" + std::to_string(rows); }
 
   /*!
-    The board as a PDF of one page, vectors in true size: A4 or A3 where it fits, else as large as it needs. Below
-    it a line of 100 mm, to measure what the printer made of it.
+    The board as a PDF of one page, vectors in true size: A4 or A3 where it fits, else as large as it needs.
+    Below it a line of 100 mm, to measure what the printer made of it.
   */
   std::string pdf() const;
 

@@ -17,32 +17,33 @@ BEGIN_VISP_NAMESPACE
 //! One picture of the board held against what was found.
 struct VISP_EXPORT vpCalibratedView {
   std::string picture;
-  double rms = 0;   // px, reprojection error along each axis
-  bool used = true; // false: an outlier
-  double tilt = 0;  // rad, of the board against the picture plane
+  double rms = 0;                                 // px, reprojection error along each axis
+  bool used = true;                               // false: an outlier
+  double tilt = 0;                                // rad, of the board against the picture plane
   std::vector<Eigen::Vector2d> points, residuals; // px; measured minus predicted
 };
 
 //! A camera as pictures of a board show it, or why they do not.
 struct VISP_EXPORT vpCameraEstimate {
   bool valid = false;
-  std::string refusal;                // one line that says what to do, where not valid
-  vpCameraParameters camera;          // of a ViSP model; of OpenCV's: its linear part
-  std::vector<std::string> names;     // of the parameters: px, py, u0, v0, and the distortion's
-  Eigen::VectorXd values;             // of each
-  Eigen::MatrixXd covariance;         // of each
-  double rms = 0;                     // px, along each axis
-  double coverage = 0;                // share of an 8 x 6 grid over the picture that shows a point
+  std::string refusal;            // one line that says what to do, where not valid
+  vpCameraParameters camera;      // of a ViSP model; of OpenCV's: its linear part
+  std::vector<std::string> names; // of the parameters: px, py, u0, v0, and the distortion's
+  Eigen::VectorXd values;         // of each
+  Eigen::MatrixXd covariance;     // of each
+  double rms = 0;                 // px, along each axis
+  double coverage = 0;            // share of an 8 x 6 grid over the picture that shows a point
   std::vector<vpCalibratedView> views;
 };
 
 /*!
-  Intrinsic parameters from pictures of a flat board (Zhang 2000). OpenCV gives the start; then all parameters of the
-  chosen model and the board's poses are fitted to the points (Ceres), whose scatter gives the standard deviations.
+  Intrinsic parameters from pictures of a flat board (Zhang 2000). OpenCV gives the start; then all parameters
+  of the chosen model and the board's poses are fitted to the points (Ceres), whose scatter gives the standard
+  deviations.
 
-  visp: u = u0 + px x (1 + kud r^2), ViSP's perspective projection with distortion; kdu, its way back, is fitted to
-  kud over the picture, since the two are no exact inverses of each other. kannalaBrandt: as of vpCameraParameters.
-  opencv: k1, k2, p1, p2, k3, for which ViSP has no camera.
+  visp: u = u0 + px x (1 + kud r^2), ViSP's perspective projection with distortion; kdu, its way back, is
+  fitted to kud over the picture, since the two are no exact inverses of each other. kannalaBrandt: as of
+  vpCameraParameters. opencv: k1, k2, p1, p2, k3, for which ViSP has no camera.
 
   Pictures whose error is far beyond that of the others are named and left out.
 */
@@ -53,15 +54,16 @@ public:
 
   Model model = Model::visp;
   size_t fewestViews = 5;
-  double outlier = 3;              // times the median error of all pictures
-  double worstFocal = 0.01;        // share: a less certain focal length is refused
+  double outlier = 3;                // times the median error of all pictures
+  double worstFocal = 0.01;          // share: a less certain focal length is refused
   double worstPrincipalPoint = 0.01; // likewise, of the picture's width
 
   /*!
-    \param width, height Of the pictures, px. Refuses, with one line that says what to do: too few pictures, all
-    from one place, boards that are hardly tilted, focal lengths or principal points that cannot be.
+    \param width, height Of the pictures, px. Refuses, with one line that says what to do: too few pictures,
+    all from one place, boards that are hardly tilted, focal lengths or principal points that cannot be.
   */
-  vpCameraEstimate solve(const std::vector<vpBoardSight> &sights, unsigned int width, unsigned int height) const;
+  vpCameraEstimate solve(const std::vector<vpBoardSight> &sights, unsigned int width,
+                         unsigned int height) const;
 
 private:
   bool fit(const std::vector<vpBoardSight> &sights, unsigned int width, unsigned int height,

@@ -47,17 +47,17 @@ struct VISP_EXPORT vpOdometryError {
 //! What was found, with its doubt.
 struct VISP_EXPORT vpBundleResult {
   bool valid = false;
-  std::string refusal;                              // one line that says what to do, where not valid
-  vpVlpRig rig;                                     // its sigmas those of rigCovariance
-  vpRigVector step = vpRigVector::Zero();           // from the rig that was given
-  vpRigMatrix rigCovariance = vpRigMatrix::Zero();  // of the step; 0 where it was held
-  vpLampMap map;                                    // its sigmas those of lampCovariance
-  std::vector<Eigen::Matrix3d> lampCovariance;      // m^2, of each lamp's position
-  std::vector<size_t> lampImages;                   // of each lamp, that were used
-  std::vector<vpTrajectory> poses;                  // of each run, at the mean time of each view's images
+  std::string refusal;                             // one line that says what to do, where not valid
+  vpVlpRig rig;                                    // its sigmas those of rigCovariance
+  vpRigVector step = vpRigVector::Zero();          // from the rig that was given
+  vpRigMatrix rigCovariance = vpRigMatrix::Zero(); // of the step; 0 where it was held
+  vpLampMap map;                                   // its sigmas those of lampCovariance
+  std::vector<Eigen::Matrix3d> lampCovariance;     // m^2, of each lamp's position
+  std::vector<size_t> lampImages;                  // of each lamp, that were used
+  std::vector<vpTrajectory> poses;                 // of each run, at the mean time of each view's images
   std::vector<vpBundleResidual> residuals;
-  double rms = 0;           // px, of the residuals used, along each axis
-  double imageFactor = 1;   // by which the stated standard deviations of image points had to be multiplied
+  double rms = 0;         // px, of the residuals used, along each axis
+  double imageFactor = 1; // by which the stated standard deviations of image points had to be multiplied
   vpOdometryError odometry;
   /*!
     Combinations of rig parameters that the pictures do not tell apart, or only by effects smaller than a
@@ -70,16 +70,18 @@ struct VISP_EXPORT vpBundleResult {
   Bundle adjustment of a camera on a robot, of the lamps above it and of the robot's way: Levenberg-Marquardt
   (Ceres) over what is left free of rig and lamps, and the pose of each frame.
 
-  An image point is predicted at the time of its own line: the pose belongs to the mean time of the frame's images,
-  and from there the base moves on as its odometry says, or, without one, as fast as the frames before and after
-  show. The residual is that of the solvers, ray = projection of bRc^T (wRb^T (P - wtb) - btc), weighed by the
-  point's covariance. Residuals of the motion: how far the step from frame to frame is off the odometry's, along
-  the base, sideways and in heading; its constant errors (vpOdometryError) are estimated along.
+  An image point is predicted at the time of its own line: the pose belongs to the mean time of the frame's
+  images, and from there the base moves on as its odometry says, or, without one, as fast as the frames before
+  and after show. The residual is that of the solvers, ray = projection of bRc^T (wRb^T (P - wtb) - btc),
+  weighed by the point's covariance. Residuals of the motion: how far the step from frame to frame is off the
+  odometry's, along the base, sideways and in heading; its constant errors (vpOdometryError) are estimated
+  along.
 
-  Huber's loss bounds what an outlier does, and points far off are left out in the end. How large the errors of
-  image points and odometry truly are is estimated with the rest: variance components (Foerstner 1979), each the
-  sum of squares of its residuals over their redundancy, which a stochastic trace estimates (Hutchinson 1990). So
-  the standard deviations hold where a detector or an odometry is better or worse than stated.
+  Huber's loss bounds what an outlier does, and points far off are left out in the end. How large the errors
+  of image points and odometry truly are is estimated with the rest: variance components (Foerstner 1979),
+  each the sum of squares of its residuals over their redundancy, which a stochastic trace estimates
+  (Hutchinson 1990). So the standard deviations hold where a detector or an odometry is better or worse than
+  stated.
 
   The covariance is the inverse of the information of rig and lamps, the poses eliminated (Schur complement).
 */
@@ -92,26 +94,26 @@ public:
   vpRigVector rigSigma = vpRigVector::Zero();
   //! Of each lamp's position about the map's, m: 0 held, free where the map's place is not believed at all.
   std::vector<double> lampSigma;
-  //! Where no lamp's place is believed: its first lamp then stays where the map has it in x and y, and the second
-  //! in the direction from there that the map has.
+  //! Where no lamp's place is believed: its first lamp then stays where the map has it in x and y, and the
+  //! second in the direction from there that the map has.
   std::optional<vpLampDistance> distance;
 
-  double odometryShare = 0.01;     // of a step, that it may be off by, standard deviation
-  double odometryLength = 5e-5;    // m, likewise of each step
-  double odometryTurn = 5e-4;      // rad, likewise
-  double sideways = 5e-6;          // m, likewise
+  double odometryShare = 0.01;  // of a step, that it may be off by, standard deviation
+  double odometryLength = 5e-5; // m, likewise of each step
+  double odometryTurn = 5e-4;   // rad, likewise
+  double sideways = 5e-6;       // m, likewise
   /*!
-    Distance of the wheels, m, where the odometry's turn rate is theirs: then one difference of their radii makes
-    both driftPerTurn and turnPerMetre, and without that a sideways offset of the camera would pass for the former.
-    Wheels have no bias. 0: the turn rate is a gyro's, which has one, and knows nothing of metres.
+    Distance of the wheels, m, where the odometry's turn rate is theirs: then one difference of their radii
+    makes both driftPerTurn and turnPerMetre, and without that a sideways offset of the camera would pass for
+    the former. Wheels have no bias. 0: the turn rate is a gyro's, which has one, and knows nothing of metres.
   */
   double wheelSeparation = 0.16;
   double odometryScale = 0.05;       // of speed and turn rate, prior standard deviation
   double odometryTurnPerMetre = 0.2; // rad/m, likewise
   double odometryDrift = 0.001;      // m/rad, likewise
   double odometryBias = 0.01;        // rad/s, likewise
-  double systematicError = 0.02;   // px, what all image points may be off by together
-  double outlier = 8;              // standard deviations from which an image point is left out
+  double systematicError = 0.02;     // px, what all image points may be off by together
+  double outlier = 8;                // standard deviations from which an image point is left out
   int maxIterations = 100;
 
   /*!

@@ -35,31 +35,33 @@ struct VISP_EXPORT vpSurveyResult {
 };
 
 /*!
-  Where lamps hang, from a drive with odometry under them and two lamps or more measured by hand, or one distance:
-  a bundle adjustment over the whole run. Of the other lamps the map's places are not believed, only held against
-  what is found in the end.
+  Where lamps hang, from a drive with odometry under them and two lamps or more measured by hand, or one
+  distance: a bundle adjustment over the whole run. Of the other lamps the map's places are not believed, only
+  held against what is found in the end.
 
   The rig's mount takes part with the standard deviations that its file states: calibrate the mount first.
 */
 class VISP_EXPORT vpLampSurvey
 {
 public:
-  vpLampBundle bundle;               // its rigSigma: the rig's own; its lampSigma is set by solve()
-  std::vector<size_t> measured;      // indices into the map of lamps whose place is exact
+  vpLampBundle bundle;                    // its rigSigma: the rig's own; its lampSigma is set by solve()
+  std::vector<size_t> measured;           // indices into the map of lamps whose place is exact
   std::optional<vpLampDistance> distance; // in their place
-  double mapSigma = 0.005;           // m, of a map that states no position_sigma_m, to be held against it
-  double gate = 4;                   // standard deviations beyond which a lamp is displaced
-  double worstSigma = 0.1;           // m, from which on a lamp is undetermined
-  size_t fewestViews = 20;           // frames that show two lamps or more
+  double mapSigma = 0.005; // m, of a map that states no position_sigma_m, to be held against it
+  double gate = 4;         // standard deviations beyond which a lamp is displaced
+  double worstSigma = 0.1; // m, from which on a lamp is undetermined
+  size_t fewestViews = 20; // frames that show two lamps or more
 
   /*!
-    Refuses, with one line that says what to do: too few frames, a robot that stands still, measured lamps that
-    are swapped. \throw vpException (badValue) where neither two measured lamps nor a distance is given, or both.
+    Refuses, with one line that says what to do: too few frames, a robot that stands still, measured lamps
+    that are swapped. \throw vpException (badValue) where neither two measured lamps nor a distance is given,
+    or both.
   */
   vpSurveyResult solve(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map) const;
 
 private:
-  vpBundleResult adjusted(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map) const;
+  vpBundleResult adjusted(const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
+                          const vpLampMap &map) const;
   std::string swappedLamps(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map,
                            double offset) const;
   std::vector<vpSurveyedLamp> heldAgainst(const vpLampMap &map, const vpBundleResult &result) const;

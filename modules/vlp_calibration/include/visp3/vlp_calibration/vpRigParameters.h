@@ -15,10 +15,10 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   \file vpRigParameters.h
-  What of a rig lamps can tell, as a step from what the rig's files say: translation of the camera in b (x, y, z,
-  m); its rotation by a rotation vector in b, on top of the rig's (roll, pitch, yaw, rad about x, y, z of b); its
-  principal point (u0, v0, pixels of the picture as delivered); its focal length (focal, a share of px and py,
-  whose ratio stays).
+  What of a rig lamps can tell, as a step from what the rig's files say: translation of the camera in b (x, y,
+  z, m); its rotation by a rotation vector in b, on top of the rig's (roll, pitch, yaw, rad about x, y, z of
+  b); its principal point (u0, v0, pixels of the picture as delivered); its focal length (focal, a share of px
+  and py, whose ratio stays).
 */
 
 enum class vpRigParameter { x, y, z, roll, pitch, yaw, u0, v0, focal };
@@ -30,10 +30,10 @@ using vpRigMatrix = Eigen::Matrix<double, vpRigParameterCount, vpRigParameterCou
 
 //! What a parameter is called, and how it is shown to people.
 struct VISP_EXPORT vpRigParameterInfo {
-  std::string name;  // as in --fix
-  std::string unit;  // as shown
-  double shown;      // shown value of 1 m, rad, pixel or share
-  double coarse;     // m, rad, px or share: less certain than this, it is as good as unknown
+  std::string name; // as in --fix
+  std::string unit; // as shown
+  double shown;     // shown value of 1 m, rad, pixel or share
+  double coarse;    // m, rad, px or share: less certain than this, it is as good as unknown
 
   static const std::array<vpRigParameterInfo, vpRigParameterCount> &all();
 
@@ -48,8 +48,8 @@ VISP_EXPORT vpVlpRig vpMovedRig(const vpVlpRig &rig, const vpRigVector &step);
 VISP_EXPORT vpRigVector vpRigStep(const vpVlpRig &from, const vpVlpRig &to);
 
 /*!
-  What the rig's file says of its own doubt, as standard deviations of a step: its mount's. A rig says nothing of
-  its camera: u0, v0 and focal are 0.
+  What the rig's file says of its own doubt, as standard deviations of a step: its mount's. A rig says nothing
+  of its camera: u0, v0 and focal are 0.
 */
 VISP_EXPORT vpRigVector vpStatedSigma(const vpVlpRig &rig);
 

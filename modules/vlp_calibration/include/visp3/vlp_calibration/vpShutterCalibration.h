@@ -16,25 +16,25 @@ BEGIN_VISP_NAMESPACE
 
 //! What one lamp in one picture says of the shutter.
 struct VISP_EXPORT vpShutterSight {
-  std::string picture;  // name of its frame
-  std::string lamp;     // id
-  double rowTime = 0;   // s, that makes its stripes those of the lamp's frequency
-  double sigma = 0;     // s, standard deviation by the stripes alone, the lamp's clock exact
-  double exposure = 0;  // s, as soft as its stripes' edges are
+  std::string picture;      // name of its frame
+  std::string lamp;         // id
+  double rowTime = 0;       // s, that makes its stripes those of the lamp's frequency
+  double sigma = 0;         // s, standard deviation by the stripes alone, the lamp's clock exact
+  double exposure = 0;      // s, as soft as its stripes' edges are
   double exposureSigma = 0; // s
-  bool used = true;     // false: too far from all others to be chance
+  bool used = true;         // false: too far from all others to be chance
 };
 
 //! A rolling shutter as lamps of known frequency show it, or why they do not.
 struct VISP_EXPORT vpShutterEstimate {
   bool valid = false;
-  std::string refusal;      // one line that says what to do, where not valid
+  std::string refusal;       // one line that says what to do, where not valid
   bool alongColumns = false; // readout along columns instead of rows; which end is first, stripes do not show
-  double rowTime = 0;       // s, of the sensor's lines
-  double rowTimeSigma = 0;  // s, clocks of the lamps included
-  double exposure = 0;      // s, effective: what sensor, lens and tone curve make of it together
-  double exposureSigma = 0; // s; NaN where the stripes do not tell it, and then exposure, too
-  size_t pictures = 0;      // that were looked at
+  double rowTime = 0;        // s, of the sensor's lines
+  double rowTimeSigma = 0;   // s, clocks of the lamps included
+  double exposure = 0;       // s, effective: what sensor, lens and tone curve make of it together
+  double exposureSigma = 0;  // s; NaN where the stripes do not tell it, and then exposure, too
+  size_t pictures = 0;       // that were looked at
   std::vector<vpShutterSight> sights;
 };
 
@@ -52,8 +52,8 @@ struct VISP_EXPORT vpShutterEstimate {
   the median are left out. Where sights scatter more than their standard deviations say these are enlarged to
   match (the Birge ratio).
 
-  A pulse and an exposure are both boxes, and a line's light is their convolution: which is which, the lamp's `duty`
-  tells; where the map does not state it the shorter one is taken for the exposure.
+  A pulse and an exposure are both boxes, and a line's light is their convolution: which is which, the lamp's
+  `duty` tells; where the map does not state it the shorter one is taken for the exposure.
 
   \code
   vpShutterCalibration calibration(rig, map);
@@ -66,7 +66,7 @@ struct VISP_EXPORT vpShutterEstimate {
 class VISP_EXPORT vpShutterCalibration
 {
 public:
-  double gate = 5;              // standard deviations from the median beyond which a sight is left out
+  double gate = 5;                  // standard deviations from the median beyond which a sight is left out
   double worstRelativeSigma = 0.01; // a single sight less certain than this share says nothing
 
   /*!
@@ -86,7 +86,7 @@ private:
   //! Stripes of one region, in lines: nothing in here depends on a row time.
   struct Stripes {
     size_t picture;
-    double cycles, cyclesSigma;     // a line
+    double cycles, cyclesSigma; // a line
     double duty;
     double exposure, exposureSigma; // lines
     double misfit;
