@@ -50,11 +50,16 @@ std::unique_ptr<vpFrameSource> vpCameraOptions::open(const vpVlpRig &rig,
   }
   const bool resized = rig.resize.method != vpPictureResize::Method::none;
   vpCameraSettings settings;
-  settings.exposure = exposure ? exposure : std::optional<double>(rig.shutter.exposure);
+  settings.exposure = exposure;
+  if (!exposure && rig.shutter.exposure > 0) {
+    settings.exposure = rig.shutter.exposure;
+  }
   settings.gain = gain;
   settings.frameRate = rate;
-  settings.region = vpCameraRegion{0, 0, resized ? rig.resize.sourceWidth : rig.width,
-                                   resized ? rig.resize.sourceHeight : rig.height};
+  if (rig.width > 0) {
+    settings.region = vpCameraRegion{0, 0, resized ? rig.resize.sourceWidth : rig.width,
+                                     resized ? rig.resize.sourceHeight : rig.height};
+  }
   vpCameraPatience patience;
   patience.stop = [stop] { return vpInterrupt::requested() || (stop && stop()); };
   auto camera = std::make_unique<vpCameraSource>(uri, settings, patience);

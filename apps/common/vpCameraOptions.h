@@ -31,8 +31,8 @@ struct vpCameraOptions {
 
   /*!
     Opens it, with vpHostTime() as its clock: the sensor's whole picture where the rig states a resize, which
-    is then done here, else a picture of the rig's size. Waiting for a frame ends with vpInterrupt, or where
-    \e stop says so. \throw vpException as vpCameraSource.
+    is then done here, else a picture of the rig's size, or of the camera's where \e rig states none. Waiting
+    for a frame ends with vpInterrupt, or where \e stop says so. \throw vpException as vpCameraSource.
   */
   std::unique_ptr<vpFrameSource> open(const vpVlpRig &rig, const std::function<bool()> &stop = {}) const;
 

@@ -4,6 +4,8 @@
  */
 #include "common/vpFrameOptions.h"
 
+#include <utility>
+
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
@@ -17,27 +19,51 @@
 
 BEGIN_VISP_NAMESPACE
 
+namespace
+{
+//! The first frames of a source.
+class FirstFrames : public vpFrameSource
+{
+public:
+  FirstFrames(std::unique_ptr<vpFrameSource> source, size_t most) : m_source(std::move(source)), m_left(most)
+  {
+  }
+
+  bool next(vpVlpFrame &frame) override { return m_left > 0 && (--m_left, m_source->next(frame)); }
+  size_t size() const override { return m_left; }
+  std::string remark() const override { return m_source->remark(); }
+
+private:
+  std::unique_ptr<vpFrameSource> m_source;
+  size_t m_left;
+};
+} // namespace
+
 void vpFrameOptions::add(CLI::App &app)
 {
   app.add_option("--run", runs, "frames of recorded or simulated runs: DIR/frames.csv")->type_name("DIR");
   vpAddName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
   app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
   vpAddName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
+  camera.add(app);
+  app.add_option("--frames", most, "take as many frames at most (default: all; of a camera 100)")
+      ->type_name("N");
 }
 
 void vpFrameOptions::check() const
 {
-  const int kinds =
-      (runs.empty() ? 0 : 1) + (pattern.empty() ? 0 : 1) + (files.empty() ? 0 : 1) + (video.empty() ? 0 : 1);
+  const int kinds = (runs.empty() ? 0 : 1) + (pattern.empty() ? 0 : 1) + (files.empty() ? 0 : 1) +
+                    (video.empty() ? 0 : 1) + (camera.uri.empty() ? 0 : 1);
+  camera.check();
   if (kinds != 1) {
     throw vpException(
         vpException::badValue,
         "frames: " + std::string(kinds == 0 ? "none" : "more than one source") +
-            ", expected one of --run, --images, --image and --video (--help explains the options)");
+            ", expected one of --run, --images, --image, --video and --camera (--help explains the options)");
   }
 }
 
-std::vector<std::unique_ptr<vpFrameSource>> vpFrameOptions::open() const
+std::vector<std::unique_ptr<vpFrameSource>> vpFrameOptions::open(const vpVlpRig &rig) const
 {
   std::vector<std::unique_ptr<vpFrameSource>> sources;
   for (const std::string &run : runs) {
@@ -52,12 +78,24 @@ std::vector<std::unique_ptr<vpFrameSource>> vpFrameOptions::open() const
   if (!video.empty()) {
     sources.push_back(std::make_unique<vpVideoSource>(video));
   }
+  if (!camera.uri.empty()) {
+    sources.push_back(camera.open(rig));
+  }
+  if (const size_t taken = most > 0 || camera.uri.empty() ? most : ofCamera; taken > 0) {
+    for (std::unique_ptr<vpFrameSource> &source : sources) {
+      source = std::make_unique<FirstFrames>(std::move(source), taken);
+    }
+  }
   return sources;
 }
 
 std::string vpFrameOptions::name() const
 {
-  return !runs.empty() ? runs.front() : !pattern.empty() ? pattern : !files.empty() ? files.front() : video;
+  return !runs.empty()      ? runs.front()
+         : !pattern.empty() ? pattern
+         : !files.empty()   ? files.front()
+         : !video.empty()   ? video
+                            : camera.uri;
 }
 
 void vpForEachFrame(vpFrameSource &source, const std::string &name,

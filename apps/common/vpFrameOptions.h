@@ -12,28 +12,29 @@
 
 #include <visp3/vlp_sensor/vpFrameSource.h>
 
-// Declared alone: CLI11's header is large.
-namespace CLI
-{
-class App;
-}
+#include "common/vpCameraOptions.h"
 
 BEGIN_VISP_NAMESPACE
 
-//! Where a program takes its frames from: run folders, numbered pictures, single pictures, a video.
+//! Where a program takes its frames from: run folders, numbered pictures, single pictures, a video, a camera.
 struct vpFrameOptions {
   std::vector<std::string> runs; // folders
   std::string pattern;
   std::vector<std::string> files;
   std::string video;
+  vpCameraOptions camera;
+  size_t most = 0; // frames of each source; 0: all there are, of a camera `ofCamera`
+
+  static constexpr size_t ofCamera = 100;
 
   void add(CLI::App &app);
 
   //! \throw vpException (badValue) unless there is exactly one kind of source.
   void check() const;
 
-  //! One for each run, else one.
-  std::vector<std::unique_ptr<vpFrameSource>> open() const;
+  //! One for each run, else one. \param rig What a camera is set to; as it comes, the camera is left as it
+  //! is.
+  std::vector<std::unique_ptr<vpFrameSource>> open(const vpVlpRig &rig = {}) const;
 
   //! For messages.
   std::string name() const;

@@ -112,6 +112,24 @@ struct Seen {
   std::string otherSize; // of a board in the first picture without ours
 };
 
+//! Of a picture just taken: whether it shows the board, and how much of the picture all boards cover by now.
+void tellCoverage(const Seen &seen)
+{
+  static const int across = 8, down = 6; // cells of the picture
+  std::vector<bool> covered(static_cast<size_t>(across * down), false);
+  for (const vpBoardSight &sight : seen.sights) {
+    for (const auto &pixel : sight.pixels) {
+      const int u = std::clamp(static_cast<int>(pixel.x * across / seen.width), 0, across - 1),
+                v = std::clamp(static_cast<int>(pixel.y * down / seen.height), 0, down - 1);
+      covered[static_cast<size_t>(v * across + u)] = true;
+    }
+  }
+  spdlog::info("{}: {}; {:.0f} % of the picture covered so far", vpOneLine(seen.sights.back().picture),
+               seen.sights.back().pixels.empty() ? "no board" : "board found",
+               100. * static_cast<double>(std::count(covered.begin(), covered.end(), true)) /
+                   static_cast<double>(covered.size()));
+}
+
 Seen look(const Options &options)
 {
   Seen seen;
@@ -126,6 +144,9 @@ Seen look(const Options &options)
       seen.width = frame.I.getWidth();
       seen.height = frame.I.getHeight();
       seen.sights.push_back(options.board.find(frame.I, frame.name));
+      if (!options.frames.camera.uri.empty()) {
+        tellCoverage(seen);
+      }
       if (seen.sights.back().pixels.empty() && seen.otherSize.empty() &&
           options.board.kind == vpBoard::Kind::chessboard) {
         seen.otherSize = options.board.sizeShown(frame.I);

@@ -138,7 +138,7 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
     rig = vpVlpRig::load(options.rig);
   }
   vpShutterCalibration calibration(rig, options.map());
-  for (const std::unique_ptr<vpFrameSource> &source : options.frames.open()) {
+  for (const std::unique_ptr<vpFrameSource> &source : options.frames.open(rig)) {
     vpForEachFrame(*source, options.frames.name(), [&](const vpVlpFrame &frame) { calibration.add(frame); });
   }
   const vpShutterEstimate found = calibration.solve();

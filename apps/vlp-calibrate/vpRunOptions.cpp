@@ -99,7 +99,7 @@ std::vector<vpLampRun> vpRunOptions::read(const vpVlpRig &guess, const vpLampMap
 {
   using Motion = vpLampRun::Motion;
   std::vector<vpLampRun> all;
-  const std::vector<std::unique_ptr<vpFrameSource>> sources = frames.open();
+  const std::vector<std::unique_ptr<vpFrameSource>> sources = frames.open(guess);
   for (size_t i = 0; i < sources.size(); ++i) {
     vpLampRun run;
     run.motion = motion == "spin"     ? Motion::spin
