@@ -26,17 +26,17 @@ void vpCameraOptions::add(CLI::App &app)
 {
   vpAddName(app, "--camera", uri, "URI",
             "frames from a camera, live: aravis://NAME, v4l2:///dev/video0, uvc://VID:PID, mindvision://");
-  app.add_option("--exposure", exposure, "of the camera, s; default: the rig's")->type_name("S");
-  app.add_option("--gain", gain, "of the camera, in its own unit; default: as it is")->type_name("G");
-  app.add_option("--rate", rate, "frames a second of the camera; default: as it is")->type_name("HZ");
+  app.add_option("--camera-exposure", exposure, "of the camera, s; default: the rig's")->type_name("S");
+  app.add_option("--camera-gain", gain, "of the camera, in its own unit; default: as it is")->type_name("G");
+  app.add_option("--camera-rate", rate, "frames a second of the camera; default: as it is")->type_name("HZ");
 }
 
 void vpCameraOptions::check() const
 {
   if (uri.empty() && (exposure || gain || rate)) {
-    throw vpException(vpException::badValue, std::string(exposure ? "--exposure"
-                                                         : gain   ? "--gain"
-                                                                  : "--rate") +
+    throw vpException(vpException::badValue, std::string(exposure ? "--camera-exposure"
+                                                         : gain   ? "--camera-gain"
+                                                                  : "--camera-rate") +
                                                  ": of no camera, expected --camera too");
   }
 }

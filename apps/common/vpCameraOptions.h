@@ -17,7 +17,7 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! Frames from a camera, as the programs' command lines ask for them: --camera, --exposure, --gain, --rate.
+//! Frames from a camera, as the programs' command lines ask for them: --camera, --camera-exposure and so on.
 struct vpCameraOptions {
   std::string uri;                // or the folder of a run in its place; empty: no camera was asked for
   std::optional<double> exposure; // s; as it comes the rig's

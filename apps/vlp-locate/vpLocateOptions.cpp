@@ -32,7 +32,7 @@ Examples:
   vlp-locate --rig rig.yaml --lamps lamps.yaml --images 'frames/%04d.png' --fixes fixes.csv --overlay look
   vlp-locate --rig rig.yaml --lamps lamps.yaml --image a.png b.jpg > poses.tum
   vlp-locate --list-cameras
-  vlp-locate --rig rig.yaml --lamps lamps.yaml --camera aravis:// --rate 12 --display
+  vlp-locate --rig rig.yaml --lamps lamps.yaml --camera aravis:// --camera-rate 12 --display
 
 Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
   poses    TUM: timestamp tx ty tz qx qy qz qw; a frame without a position, or with two that explain it

@@ -4,6 +4,7 @@
  */
 #include "vpBoardServoWorld.h"
 
+#include <visp3/vlp_core/vpHostTime.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 #include <visp3/vlp_robot/vpOpenTurtleBot3.h>
 
@@ -16,6 +17,7 @@ vpBoardServoWorld::vpBoardServoWorld(const vpVlpServoOptions &options)
     m_map = vpLampMap::load(options.lampsFile);
   }
   vpRobotTurtleBot3Settings settings;
+  settings.clock = vpHostTime;
   m_base = vpOpenTurtleBot3(options.robot, settings);
   if (options.pose != vpVlpServoOptions::Pose::lamps) {
     m_pictures = std::make_unique<NoPictures>();

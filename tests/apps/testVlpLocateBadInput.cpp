@@ -228,7 +228,7 @@ TEST(VlpLocateBadInput, BadUsage)
   const auto rig = vpLocateScene::writeRig(folder);
   const std::string picture = folder.write("a.png", encoded(".png", vpLocateScene::picture()));
   const std::vector<std::string> good = with(rig, {"--image", picture});
-  expectOneLine({}, badInput, {"--run, --images, --image and --video", "--help"});
+  expectOneLine({}, badInput, {"--run, --images, --image, --video and --camera", "--help"});
   expectOneLine({"--image", picture}, badInput, {"--rig"});
   expectOneLine({"--rig", rig[1], "--image", picture}, badInput, {"--lamps"});
   expectOneLine(with(good, {"--run", folder.path()}), badInput, {"more than one source"});

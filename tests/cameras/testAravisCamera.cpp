@@ -183,7 +183,7 @@ TEST_P(VlpLocateLive, GivesPosesFromACamera)
   const vpTemporaryFolder folder;
   vpProcess locate("vlp-locate",
                    {"--rig", data + "/rigs/" + GetParam(), "--lamps", data + "/lamps/paper.yaml", "--camera",
-                    uri, "--rate", "4", "--frames", "8", "--poses", folder / "poses.tum"});
+                    uri, "--camera-rate", "4", "--frames", "8", "--poses", folder / "poses.tum"});
   ASSERT_EQ(locate.wait(), 0) << locate.err();
   EXPECT_NE(locate.err().find("exposed for"), std::string::npos) << locate.err();
   const vpHomogeneousMatrix truth = simulation.wMb(0.15);

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include <visp3/core/vpException.h>
-#include <visp3/vlp_core/vpHostTime.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
 BEGIN_VISP_NAMESPACE
@@ -79,7 +78,7 @@ void vpRobotTurtleBot3::begin()
 {
   identify();
   prepareMotors();
-  m_clockOffset = (m_settings.clock ? m_settings.clock() : vpHostTime()) - now();
+  m_clockOffset = m_settings.clock ? m_settings.clock() - now() : 0;
   dateBoard();
   m_last = readingOf(readTable(now() + openingTime));
   m_odometry = {m_last.time + m_clockOffset, 0, 0};

@@ -26,7 +26,7 @@ struct VISP_EXPORT vpRobotTurtleBot3Settings {
   bool allowDebugMode = false;              // drive a board whose watchdog is switched off
   TurnSource turnSource = TurnSource::gyro; // of vpOdometry::w
 
-  //! Clock of the frames' time stamps, s. Empty: vpHostTime().
+  //! Clock of the frames' time stamps, s. Empty: the transport's own, vpByteTransport::now().
   std::function<double()> clock;
 
   double commandDeadline = 0.2;  // s, for all transactions of one command together
