@@ -4,8 +4,8 @@
  */
 // Cameras that Linux drives: Video for Linux 2.
 
-#include <cerrno>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <ctime>
