@@ -6,7 +6,11 @@
 
 #include <algorithm>
 
+#include <cmath>
+
 #include <CLI/CLI.hpp>
+#include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpNumberText.h>
 
 #include "common/vpProgram.h"
 
@@ -31,6 +35,24 @@ void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,
     const bool known = std::find(choices.begin(), choices.end(), text) != choices.end();
     return known ? std::string() : vpOneLine(text) + ", expected " + names;
   });
+}
+
+std::vector<double> vpNumbersOf(const std::string &option, const std::string &text, size_t count,
+                                const std::string &expected)
+{
+  std::vector<double> values;
+  bool good = true;
+  for (size_t begin = 0; good && begin <= text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    double value = 0;
+    good = vpParseNumber(text.substr(begin, end - begin), value) && std::isfinite(value);
+    values.push_back(value);
+    begin = end + 1;
+  }
+  if (!good || values.size() != count) {
+    throw vpException(vpException::badValue, option + ": " + vpShown(text) + ", expected " + expected);
+  }
+  return values;
 }
 
 END_VISP_NAMESPACE

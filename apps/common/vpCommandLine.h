@@ -26,6 +26,11 @@ void vpAddName(CLI::App &app, const std::string &option, std::string &name, cons
 void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,
                  const std::vector<std::string> &choices, const std::string &help);
 
+//! \e count finite numbers parted by commas. \throw vpException (badValue) that names \e option and \e
+//! expected.
+std::vector<double> vpNumbersOf(const std::string &option, const std::string &text, size_t count,
+                                const std::string &expected);
+
 END_VISP_NAMESPACE
 
 #endif

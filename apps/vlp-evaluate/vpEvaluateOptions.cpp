@@ -54,18 +54,7 @@ Exit code: 0 done; 2 bad usage or bad input; 3 nothing to evaluate: no poses, or
 //! x1,y1,x2,y2 in metres.
 vpTrackLine lineOf(const std::string &text)
 {
-  std::vector<double> values;
-  bool good = true;
-  for (size_t begin = 0; good && begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    double value = 0;
-    good = vpParseNumber(text.substr(begin, end - begin), value) && std::isfinite(value);
-    values.push_back(value);
-    begin = end + 1;
-  }
-  if (!good || values.size() != 4) {
-    fail("--line: " + vpShown(text) + ", expected four numbers x1,y1,x2,y2 (m)");
-  }
+  const std::vector<double> values = vpNumbersOf("--line", text, 4, "four numbers x1,y1,x2,y2 (m)");
   if (std::hypot(values[2] - values[0], values[3] - values[1]) < 1e-6) {
     fail("--line: " + vpShown(text) + ", expected two different points");
   }

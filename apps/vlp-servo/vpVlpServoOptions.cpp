@@ -58,30 +58,11 @@ Exit code: 0 the path was driven to its end, or somebody ended it; 2 bad usage o
   throw vpException(vpException::badValue, problem);
 }
 
-//! Numbers parted by commas.
-std::vector<double> numbersOf(const std::string &option, const std::string &text, size_t count,
-                              const std::string &expected)
-{
-  std::vector<double> values;
-  bool good = true;
-  for (size_t begin = 0; good && begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    double value = 0;
-    good = vpParseNumber(text.substr(begin, end - begin), value) && std::isfinite(value);
-    values.push_back(value);
-    begin = end + 1;
-  }
-  if (!good || values.size() != count) {
-    fail(option + ": " + vpShown(text) + ", expected " + expected);
-  }
-  return values;
-}
-
 //! Into \e value, where \e text was given.
 void readPositive(const std::string &option, const std::string &text, double &value)
 {
   if (!text.empty()) {
-    value = numbersOf(option, text, 1, "a number above 0")[0];
+    value = vpNumbersOf(option, text, 1, "a number above 0")[0];
     if (value <= 0) {
       fail(option + ": " + vpShown(text) + ", expected a number above 0");
     }
@@ -95,7 +76,7 @@ void readFence(const std::string &text, std::optional<Eigen::AlignedBox2d> &fenc
     return;
   }
   const std::string expected = "four numbers x1,y1,x2,y2 (m), the lower left corner first";
-  const std::vector<double> corners = numbersOf("--fence", text, 4, expected);
+  const std::vector<double> corners = vpNumbersOf("--fence", text, 4, expected);
   fence =
       Eigen::AlignedBox2d(Eigen::Vector2d(corners[0], corners[1]), Eigen::Vector2d(corners[2], corners[3]));
   if (fence->isEmpty()) {
@@ -155,7 +136,7 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   readFence(fence, loop.safety.fence);
   if (!startText.empty()) {
     const std::vector<double> numbers =
-        numbersOf("--start", startText, 3, "three numbers x,y,yaw (m, m, degrees)");
+        vpNumbersOf("--start", startText, 3, "three numbers x,y,yaw (m, m, degrees)");
     start = vpServoStart{numbers[0], numbers[1], numbers[2] * M_PI / 180};
   }
   check();

@@ -88,4 +88,22 @@ inline double vpWayOf(vpRealTimeBoard &board)
   });
 }
 
+//! Drives over a line that spoils and loses some of the bytes: what the wheels turned is all there in the
+//! end.
+inline void vpExpectNoTickLost(vpRealTimeBoard &board, vpRobotTurtleBot3 &base, double motorLag)
+{
+  vpFaultyLine::Faults faults;
+  faults.corrupted = 0.0003;
+  faults.lost = 0.0001;
+  faults.delayed = 0.005;
+  board.setFaults(faults);
+  vpOdometryWay way = vpDriveInRealTime(base, {0.1, 0}, 1.5);
+  EXPECT_GT(base.statistics().timeouts + base.statistics().crcErrors, 0u);
+  board.setFaults({});
+  base.stop();
+  EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.1 / 0.001) + 0.021);
+  way.add(base.odometry());
+  EXPECT_NEAR(way.metres, vpWayOf(board), 0.0002);
+}
+
 #endif

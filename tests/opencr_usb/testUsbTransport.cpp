@@ -119,18 +119,7 @@ TEST_F(UsbTransport, LosesNoTickOnABadLine)
 {
   usb.plug(7);
   const auto base = vpOpenTurtleBot3("opencr:usb");
-  vpFaultyLine::Faults faults;
-  faults.corrupted = 0.0003;
-  faults.lost = 0.0001;
-  faults.delayed = 0.005;
-  board.setFaults(faults);
-  vpOdometryWay way = vpDriveInRealTime(*base, {0.1, 0}, 1.5);
-  EXPECT_GT(base->statistics().timeouts + base->statistics().crcErrors, 0u);
-  board.setFaults({});
-  base->stop();
-  EXPECT_LT(vpStandstillAfter(board, vpTimeOf(board)), motorLag * std::log(0.1 / 0.001) + 0.021);
-  way.add(base->odometry());
-  EXPECT_NEAR(way.metres, vpWayOf(board), 0.0002);
+  vpExpectNoTickLost(board, *base, motorLag);
 }
 
 TEST_F(UsbTransport, PulledWhileDrivingItStandsAndComesBack)

@@ -101,17 +101,12 @@ vpBundleResult vpMountCalibration::solve(const std::vector<vpLampRun> &runs, con
   // What priors hold is told, not refused.
   std::vector<std::string> open;
   for (const std::string &names : result.unseparated) {
-    bool free = false;
+    bool free = false, held = false; // any of them; by a prior
     for (int i = 0; i < vpRigParameterCount; ++i) {
       const std::string &name = vpRigParameterInfo::all()[static_cast<size_t>(i)].name;
-      free = free || (std::isinf(bundle.rigSigma(i)) &&
-                      (" " + names + " ").find(" " + name + " ") != std::string::npos);
-    }
-    bool held = false; // by a prior on one of them
-    for (int i = 0; i < vpRigParameterCount; ++i) {
-      const std::string &name = vpRigParameterInfo::all()[static_cast<size_t>(i)].name;
-      held = held || (std::isfinite(bundle.rigSigma(i)) &&
-                      (" " + names + " ").find(" " + name + " ") != std::string::npos);
+      if ((" " + names + " ").find(" " + name + " ") != std::string::npos) {
+        (std::isinf(bundle.rigSigma(i)) ? free : held) = true;
+      }
     }
     if (free && !held) {
       open.push_back(names);
