@@ -7,7 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <vector>
+
+#include <visp3/vlp_core/vpSimdClones.h>
+
+#include "vpLanes.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi" // vectors are passed within this file only
 
 BEGIN_VISP_NAMESPACE
 
@@ -29,25 +37,60 @@ double unclipped(double black)
   return 1 / (1 - 0.83 * std::min(black, 0.84));
 }
 
-Block blockAt(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
+//! Over a block: of the grey values, of their squares, of the squares of each line's own sum; how many are
+//! black.
+struct Sums {
+  int grey = 0, squares = 0, black = 0;
+  std::int64_t ofLines = 0;
+};
+
+Sums sumsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
 {
-  double squares = 0; // about each line's own mean
-  int all = 0, black = 0;
+  Sums sums;
   for (int y = box.y; y < box.br().y; ++y) {
     const unsigned char *row = lines[y] + box.x;
-    int sum = 0, sumSquares = 0;
+    int sum = 0;
     for (int x = 0; x < box.width; ++x) {
       const int grey = row[x];
       sum += grey;
-      sumSquares += grey * grey;
-      black += grey == 0;
+      sums.squares += grey * grey;
+      sums.black += grey == 0;
     }
-    all += sum;
-    squares += sumSquares - static_cast<double>(sum) * sum / box.width;
+    sums.grey += sum;
+    sums.ofLines += static_cast<std::int64_t>(sum) * sum;
   }
-  const double mean = all;
-  const double variance = squares / std::max(1, box.height * (box.width - 1));
-  return {mean / box.area(), std::sqrt(variance) * unclipped(static_cast<double>(black) / box.area())};
+  return sums;
+}
+
+constexpr int side = 8; // px, of a block; of smaller pictures their own
+
+//! The same of blocks of \e side lines and samples, one after the other along the line.
+VP_SIMD_CLONES void sumsOfBlocks(const unsigned char *first, size_t step, size_t apart, size_t blocks,
+                                 Sums *sums)
+{
+  for (size_t block = 0; block < blocks; ++block) {
+    vpLanes::Integers grey{}, squares{}, black{};
+    std::int64_t ofLines = 0;
+    for (size_t y = 0; y < side; ++y) {
+      vpLanes::Bytes bytes;
+      std::memcpy(&bytes, first + block * apart + y * step, sizeof(bytes));
+      const vpLanes::Integers line = __builtin_convertvector(bytes, vpLanes::Integers);
+      grey += line;
+      squares += line * line;
+      black -= line == 0;
+      const std::int64_t sum = vpLanes::sum(bytes);
+      ofLines += sum * sum;
+    }
+    sums[block] = {vpLanes::sum(grey), vpLanes::sum(squares), vpLanes::sum(black), ofLines};
+  }
+}
+
+Block blockOf(const Sums &sums, int width, int height)
+{
+  const double area = width * height;
+  const double squares = sums.squares - static_cast<double>(sums.ofLines) / width; // about each line's mean
+  const double variance = std::max(0.0, squares) / std::max(1, height * (width - 1));
+  return {sums.grey / area, std::sqrt(variance) * unclipped(sums.black / area)};
 }
 
 double quantile(std::vector<double> values, double share)
@@ -61,16 +104,23 @@ double quantile(std::vector<double> values, double share)
 
 vpBackground vpBackground::of(const cv::Mat_<unsigned char> &lines)
 {
-  static const int side = 8; // px
   static const int most = 3000;
   static const double leastNoise = 0.3; // grey levels: that of rounding
   const int width = std::min(side, lines.cols);
   const int height = std::min(side, lines.rows);
   const int step = std::max(side, static_cast<int>(std::sqrt(static_cast<double>(lines.total()) / most)));
   std::vector<Block> blocks;
+  std::vector<Sums> sums(static_cast<size_t>((lines.cols - width) / step + 1));
   for (int y = 0; y + height <= lines.rows; y += step) {
-    for (int x = 0; x + width <= lines.cols; x += step) {
-      blocks.push_back(blockAt(lines, cv::Rect(x, y, width, height)));
+    if (width == side && height == side) {
+      sumsOfBlocks(lines[y], lines.step, static_cast<size_t>(step), sums.size(), sums.data());
+    } else {
+      for (size_t i = 0; i < sums.size(); ++i) {
+        sums[i] = sumsOf(lines, cv::Rect(static_cast<int>(i) * step, y, width, height));
+      }
+    }
+    for (const Sums &block : sums) {
+      blocks.push_back(blockOf(block, width, height));
     }
   }
   std::vector<double> means;

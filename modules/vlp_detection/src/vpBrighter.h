@@ -35,6 +35,15 @@ inline std::uint64_t mask(const unsigned char *row, int samples, unsigned char g
   }
   return bits;
 }
+
+//! Whether any sample of a whole block is.
+inline bool any(const unsigned char *row, unsigned char grey)
+{
+  static constexpr int width = cv::v_uint8x16::nlanes;
+  const cv::v_uint8x16 most = cv::v_max(cv::v_max(cv::v_load(row), cv::v_load(row + width)),
+                                        cv::v_max(cv::v_load(row + 2 * width), cv::v_load(row + 3 * width)));
+  return cv::v_check_any(most > cv::v_setall_u8(grey));
+}
 } // namespace vpBrighter
 
 END_VISP_NAMESPACE

@@ -8,9 +8,12 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
+
+#include "vpOutlineModel.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -196,11 +199,11 @@ int longestGap(const vpLedRoi &roi)
 //! First and last line of the ellipse through the ends of the chords; of the region, where none fits.
 std::pair<double, double> ellipseLines(const std::vector<cv::Point2f> &points, const cv::Rect &box)
 {
-  const cv::RotatedRect e = cv::fitEllipseDirect(points);
-  const double c = std::cos(e.angle * CV_PI / 180);
-  const double s = std::sin(e.angle * CV_PI / 180);
-  const double half = 0.5 * std::hypot(s * e.size.width, c * e.size.height);
-  return {std::min<double>(box.y, e.center.y - half), std::max<double>(box.br().y - 1, e.center.y + half)};
+  double top = box.y, bottom = box.br().y - 1;
+  if (const std::optional<vpEllipseModel> ellipse = vpEllipseModel::through(points)) {
+    ellipse->vertical(top, bottom);
+  }
+  return {std::min<double>(box.y, top), std::max<double>(box.br().y - 1, bottom)};
 }
 
 /*!
@@ -238,21 +241,15 @@ double vpChordShape::ellipseMisfit(const std::vector<cv::Point2f> &points, const
   if (points.size() < 6) {
     return noFit;
   }
-  const cv::RotatedRect e = cv::fitEllipseDirect(points);
-  const double longest = 1.5 * std::max(box.width, box.height) + 4;
-  if (!(e.size.width > 2) || !(e.size.height > 2) || e.size.width > longest || e.size.height > longest) {
+  const std::optional<vpEllipseModel> ellipse = vpEllipseModel::through(points);
+  static const double smallest = 1; // px
+  const double longest = 0.75 * std::max(box.width, box.height) + 2;
+  if (!ellipse || !(ellipse->axes().y() > smallest) || !(ellipse->axes().x() < longest)) {
     return noFit;
   }
-  const double c = std::cos(e.angle * CV_PI / 180);
-  const double s = std::sin(e.angle * CV_PI / 180);
   double sum = 0;
-  for (const cv::Point2f &p : points) {
-    const double x = 2 * (c * (p.x - e.center.x) + s * (p.y - e.center.y)) / e.size.width;
-    const double y = 2 * (-s * (p.x - e.center.x) + c * (p.y - e.center.y)) / e.size.height;
-    const double rho = std::sqrt(x * x + y * y), gradientU = x / e.size.width, gradientV = y / e.size.height;
-    const double gradient =
-        2 * std::sqrt(gradientU * gradientU + gradientV * gradientV) / std::max(rho, 1e-9);
-    const double distance = (rho - 1) / std::max(gradient, 1e-9);
+  for (const cv::Point2f &point : points) {
+    const double distance = ellipse->distance({point.x, point.y});
     sum += distance * distance;
   }
   return std::sqrt(sum / points.size());

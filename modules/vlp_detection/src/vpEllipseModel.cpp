@@ -5,23 +5,50 @@
 #include "vpOutlineModel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
-#include <opencv2/imgproc.hpp>
+#include <Eigen/LU>
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! Symmetric matrix with the eigenvectors of \e A and f of its eigenvalues.
-template <typename F>
-Eigen::Matrix2d onEigenvalues(const Eigen::Matrix2d &A, F f)
+//! Root of a symmetric positive definite matrix, by Cayley and Hamilton.
+Eigen::Matrix2d rootOf(const Eigen::Matrix2d &A)
 {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(A);
-  const Eigen::Vector2d values = eigen.eigenvalues().unaryExpr(f);
-  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+  const double det = std::sqrt(std::max(A.determinant(), 1e-24));
+  return (A + det * Eigen::Matrix2d::Identity()) / std::sqrt(A.trace() + 2 * det);
+}
+
+/*!
+  The conic A x^2 + B x y + C y^2 + D x + E y + F = 0 of least algebraic distance, under 4 A C - B^2 = 1.
+  Nothing where the sums say nothing of one.
+  \param S1, S2, S3 Sums of products of (x^2, x y, y^2) with themselves, with (x, y, 1), and of these.
+*/
+std::optional<Eigen::Matrix<double, 6, 1>> ellipticConic(const Eigen::Matrix3d &S1, const Eigen::Matrix3d &S2,
+                                                         const Eigen::Matrix3d &S3)
+{
+  static const double least = 1e-9; // of points of unit spread: less is a line
+  if (!(std::abs(S3.determinant()) > least)) {
+    return std::nullopt;
+  }
+  const Eigen::Matrix3d T = -S3.inverse() * S2.transpose();
+  const Eigen::Matrix3d M = S1 + S2 * T;
+  Eigen::Matrix3d reduced;
+  reduced << 0.5 * M.row(2), -M.row(1), 0.5 * M.row(0);
+  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(reduced);
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d a = eigen.eigenvectors().col(i).real();
+    if (4 * a(0) * a(2) - a(1) * a(1) > 0) {
+      Eigen::Matrix<double, 6, 1> conic;
+      conic << a, T * a;
+      return conic;
+    }
+  }
+  return std::nullopt;
 }
 
 /*!
@@ -73,20 +100,76 @@ vpEllipseModel::vpEllipseModel(const Eigen::Vector2d &centre, double a, double b
   m_shape = R * Eigen::Vector2d(1 / a, 1 / b).asDiagonal() * R.transpose();
 }
 
+std::optional<vpEllipseModel> vpEllipseModel::through(const std::vector<cv::Point2f> &points)
+{
+  if (points.size() < 5) {
+    return std::nullopt;
+  }
+  const auto n = static_cast<double>(points.size());
+  cv::Point2d middle(0, 0);
+  for (const cv::Point2f &point : points) {
+    middle += cv::Point2d(point) / n;
+  }
+  double spread = 0;
+  for (const cv::Point2f &point : points) {
+    spread += (std::abs(point.x - middle.x) + std::abs(point.y - middle.y)) / (2 * n);
+  }
+  const double perSpread = 1 / std::max(spread, 1e-9);
+  std::array<std::array<double, 5>, 5> sum{}; // of x^i y^k, means
+  for (const cv::Point2f &point : points) {
+    const double x = (point.x - middle.x) * perSpread, y = (point.y - middle.y) * perSpread, xx = x * x,
+                 xy = x * y, yy = y * y;
+    sum[1][0] += x;
+    sum[0][1] += y;
+    sum[2][0] += xx;
+    sum[1][1] += xy;
+    sum[0][2] += yy;
+    sum[3][0] += xx * x;
+    sum[2][1] += xx * y;
+    sum[1][2] += x * yy;
+    sum[0][3] += yy * y;
+    sum[4][0] += xx * xx;
+    sum[3][1] += xx * xy;
+    sum[2][2] += xx * yy;
+    sum[1][3] += xy * yy;
+    sum[0][4] += yy * yy;
+  }
+  for (auto &ofX : sum) {
+    for (double &ofY : ofX) {
+      ofY /= n;
+    }
+  }
+  Eigen::Matrix3d S1, S2, S3;
+  S1 << sum[4][0], sum[3][1], sum[2][2], sum[3][1], sum[2][2], sum[1][3], sum[2][2], sum[1][3], sum[0][4];
+  S2 << sum[3][0], sum[2][1], sum[2][0], sum[2][1], sum[1][2], sum[1][1], sum[1][2], sum[0][3], sum[0][2];
+  S3 << sum[2][0], sum[1][1], sum[1][0], sum[1][1], sum[0][2], sum[0][1], sum[1][0], sum[0][1], 1;
+  const std::optional<Eigen::Matrix<double, 6, 1>> conic = ellipticConic(S1, S2, S3);
+  if (!conic) {
+    return std::nullopt;
+  }
+  Eigen::Matrix2d Q;
+  Q << (*conic)(0), 0.5 * (*conic)(1), 0.5 * (*conic)(1), (*conic)(2);
+  const Eigen::Vector2d linear(0.5 * (*conic)(3), 0.5 * (*conic)(4));
+  const Eigen::Vector2d centre = -Q.inverse() * linear;
+  Q /= -(linear.dot(centre) + (*conic)(5)); // 1 on the outline
+  if (!Q.allFinite() || !centre.allFinite() || !(Q.trace() > 0)) {
+    return std::nullopt;
+  }
+  return vpEllipseModel(Eigen::Vector2d(middle.x, middle.y) + centre / perSpread,
+                        Eigen::Matrix2d(rootOf(Q) * perSpread));
+}
+
 vpEllipseModel vpEllipseModel::from(const std::vector<cv::Point2f> &points, const cv::Rect &box)
 {
   const Eigen::Vector2d middle(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
   const double radius = 0.5 * std::max(box.width, box.height);
   std::optional<vpEllipseModel> best;
   if (points.size() >= 6) {
-    const cv::RotatedRect e = cv::fitEllipseDirect(points);
-    const double a = 0.5 * e.size.width;
-    const double b = 0.5 * e.size.height;
-    const vpEllipseModel model({e.center.x, e.center.y}, std::max(a, 1.0), std::max(b, 1.0),
-                               e.angle * M_PI / 180);
-    const double ratio = a / b;
-    if (ratio > 0.4 && ratio < 2.5 && model.plausible(box)) {
-      best = model;
+    static const double longest = 2.5, smallest = 1; // a / b; px
+    best = through(points);
+    const Eigen::Vector2d axes = best ? best->axes() : Eigen::Vector2d::Zero();
+    if (!(axes.y() > smallest) || axes.x() > longest * axes.y() || !best->plausible(box)) {
+      best.reset();
     }
     // Of an arc alone the ellipse comes out much too small.
     const std::optional<vpEllipseModel> circle = circleOf(points);
@@ -116,9 +199,12 @@ void vpEllipseModel::advance(const Vector &step)
   m_centre += step.head<2>();
   Eigen::Matrix2d E;
   E << step(3), step(4), step(4), -step(3);
+  // exp(-E / 2): the square of E is a multiple of the identity.
+  const double half = 0.5 * std::hypot(step(3), step(4));
+  const double perHalf = half > 1e-9 ? std::sinh(half) / half : 1;
   const Eigen::Matrix2d M =
-      std::exp(-step(2)) * onEigenvalues(E, [](double e) { return std::exp(-0.5 * e); }) * m_shape;
-  m_shape = onEigenvalues(M.transpose() * M, [](double e) { return std::sqrt(std::max(e, 1e-12)); });
+      std::exp(-step(2)) * (std::cosh(half) * Eigen::Matrix2d::Identity() - 0.5 * perHalf * E) * m_shape;
+  m_shape = rootOf(M.transpose() * M);
 }
 
 double vpEllipseModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
@@ -163,6 +249,14 @@ void vpEllipseModel::vertical(double &top, double &bottom) const
   bottom = m_centre.y() + half;
 }
 
+Eigen::Vector2d vpEllipseModel::axes() const
+{
+  // Eigenvalues of the shape are 1 / a and 1 / b.
+  const double mean = 0.5 * m_shape.trace(),
+               apart = std::hypot(0.5 * (m_shape(0, 0) - m_shape(1, 1)), m_shape(0, 1));
+  return {1 / (mean - apart), 1 / (mean + apart)};
+}
+
 double vpEllipseModel::radius() const
 {
   return 1 / std::sqrt(std::max(m_shape.determinant(), 1e-12));
@@ -172,11 +266,9 @@ bool vpEllipseModel::plausible(const cv::Rect &box) const
 {
   const double size = std::max(box.width, box.height);
   const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(m_shape);
-  const double a = 1 / eigen.eigenvalues()(0);
-  const double b = 1 / eigen.eigenvalues()(1);
-  return std::isfinite(a) && std::isfinite(b) && a < 3 * size && b > 0.2 * std::min(box.width, box.height) &&
-         a < 4 * b && (m_centre - middle).norm() < 1.5 * size;
+  const double a = axes().x(), b = axes().y();
+  return std::isfinite(a) && std::isfinite(b) && a > 0 && a < 3 * size &&
+         b > 0.2 * std::min(box.width, box.height) && a < 4 * b && (m_centre - middle).norm() < 1.5 * size;
 }
 
 vpLampOutline vpEllipseModel::outline(const Eigen::MatrixXd &covariance) const

@@ -22,6 +22,7 @@ namespace vpLanes
 constexpr int count = 8;
 using Floats = float __attribute__((vector_size(count * sizeof(float))));
 using Integers = std::int32_t __attribute__((vector_size(count * sizeof(std::int32_t))));
+using Bytes = std::uint8_t __attribute__((vector_size(count)));
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi" // how functions would pass vectors: none of these is ever called
@@ -52,6 +53,24 @@ VP_LANES_INLINE Floats most(const Floats &a, const Floats &b)
 VP_LANES_INLINE Floats magnitude(const Floats &x)
 {
   return reinterpret_cast<Floats>(reinterpret_cast<Integers>(x) & 0x7fffffff);
+}
+
+VP_LANES_INLINE float sum(const Floats &x)
+{
+  return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
+}
+
+VP_LANES_INLINE std::int32_t sum(const Integers &x)
+{
+  return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
+}
+
+//! Pairs of bytes first, then the four sums by one product.
+VP_LANES_INLINE std::int32_t sum(const Bytes &x)
+{
+  const auto all = reinterpret_cast<std::uint64_t>(x);
+  const std::uint64_t pairs = (all & 0x00ff00ff00ff00ffU) + (all >> 8 & 0x00ff00ff00ff00ffU);
+  return static_cast<std::int32_t>(pairs * 0x0001000100010001U >> 48);
 }
 
 VP_LANES_INLINE Floats root(const Floats &x)

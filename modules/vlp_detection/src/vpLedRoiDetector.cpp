@@ -328,17 +328,18 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
   if (lines.empty()) {
     return {};
   }
-  double brightest = 0;
-  cv::minMaxLoc(lines, nullptr, &brightest);
   const vpBackground dark = vpBackground::of(lines);
   const double lowest = std::max(noiseFactor * dark.noise, minContrast);
 
-  static const double peakFactor = 2.5;
+  static const double peakFactor = 2.5, white = 255;
   std::vector<Group> tree;
   vpLevelStripes below;
   long workLeft = 60000; // chords and stripes looked at for splitting
-  for (double contrast = lowest; dark.level + contrast < brightest; contrast *= levelRatio) {
+  for (double contrast = lowest; dark.level + contrast < white; contrast *= levelRatio) {
     const bool first = contrast <= lowest;
+    if (!first && below.stripes.empty()) {
+      break; // nothing is brighter
+    }
     const double grey = dark.level + contrast;
     vpLevelStripes level(lines, grey, grey + peakFactor * dark.noiseAt(grey), first ? nullptr : &below);
     for (vpLevelStripes::Set &set : level.sets(maxDarkGap)) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -28,6 +29,9 @@ public:
 
   //! From an ellipse with semi-axes a, b along \e angle.
   vpEllipseModel(const Eigen::Vector2d &centre, double a, double b, double angle);
+  //! Ellipse with the least algebraic distance from the points (Halir and Flusser 1998); none where they lie
+  //! on a line, or on fewer than five places.
+  static std::optional<vpEllipseModel> through(const std::vector<cv::Point2f> &points);
   //! Best ellipse of points on the outline; a circle about \e box where they allow none.
   static vpEllipseModel from(const std::vector<cv::Point2f> &points, const cv::Rect &box);
 
@@ -50,6 +54,8 @@ public:
   bool crossedWell(double, bool, bool) const { return true; }
   void vertical(double &top, double &bottom) const;
   double radius() const;
+  //! The longer and the shorter semi-axis, px.
+  Eigen::Vector2d axes() const;
   Eigen::Vector2d centre() const { return m_centre; }
   //! Symmetric; |shape (x - centre)| = 1 on the outline.
   const Eigen::Matrix2d &shape() const { return m_shape; }
@@ -58,6 +64,11 @@ public:
   vpLampOutline outline(const Eigen::MatrixXd &covariance) const;
 
 private:
+  vpEllipseModel(const Eigen::Vector2d &centre, const Eigen::Matrix2d &shape)
+      : m_centre(centre), m_shape(shape)
+  {
+  }
+
   Eigen::Vector2d m_centre;
   Eigen::Matrix2d m_shape;
 };

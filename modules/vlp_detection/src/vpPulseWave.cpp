@@ -17,7 +17,22 @@ struct Wave {
   double frequency, phase, width, duty;
 };
 
+const double narrowest = 1e-6; // periods
+
 // The wave's integral from 0 to x periods is floor(x) duty + min(x - floor(x), duty).
+VP_SIMD_CLONES void addValues(const double *time, Eigen::Index n, const Wave &wave, double *sum)
+{
+  const double frequency = wave.frequency, phase = wave.phase, duty = wave.duty, half = 0.5 * wave.width,
+               perWidth = 1 / wave.width;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double middle = frequency * time[i] + phase, to = middle + half, from = middle - half;
+    const double wholeTo = std::floor(to), wholeFrom = std::floor(from);
+    sum[i] +=
+        ((wholeTo - wholeFrom) * duty + std::min(to - wholeTo, duty) - std::min(from - wholeFrom, duty)) *
+        perWidth;
+  }
+}
+
 VP_SIMD_CLONES void evaluateAll(const double *time, Eigen::Index n, const Wave &wave, double *value,
                                 double *byTurn, double *byWidth, double *byDuty)
 {
@@ -44,9 +59,14 @@ void vpPulseWave::evaluate(const Eigen::ArrayXd &time, double frequency, double 
   for (Eigen::ArrayXd *array : {&value, &byTurn, &byWidth, &byDuty}) {
     array->resize(time.size());
   }
-  static const double narrowest = 1e-6;
   evaluateAll(time.data(), time.size(), {frequency, phase, std::max(width, narrowest), duty}, value.data(),
               byTurn.data(), byWidth.data(), byDuty.data());
+}
+
+void vpPulseWave::addValue(const Eigen::ArrayXd &time, double frequency, double phase, double width,
+                           double duty, Eigen::ArrayXd &sum)
+{
+  addValues(time.data(), time.size(), {frequency, phase, std::max(width, narrowest), duty}, sum.data());
 }
 
 END_VISP_NAMESPACE

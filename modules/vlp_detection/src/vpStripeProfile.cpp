@@ -7,51 +7,121 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <optional>
 
 #include <Eigen/LU>
+#include <visp3/vlp_core/vpSimdClones.h>
 
+#include "vpLanes.h"
 #include "vpOutlineModel.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi" // vectors are passed within this file only
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
 
+using vpLanes::all;
+using vpLanes::Floats;
+
 const int white = 250; // grey value from which a pixel may have had more light than it shows
 
-//! Stretch of line \e v inside the outline, shrunk towards its middle by \e share.
-bool chordOf(const vpLampOutline &outline, double v, double share, double &first, double &last)
+//! Stretches of the lines inside an outline.
+class Inside
 {
-  if (outline.shape == vpLampOutline::Shape::ellipse) {
-    if (!vpEllipseModel(outline.centre, outline.a, outline.b, outline.angle).stretch(v, 0, first, last)) {
+public:
+  explicit Inside(const vpLampOutline &outline) : m_outline(outline)
+  {
+    if (outline.shape == vpLampOutline::Shape::ellipse) {
+      m_ellipse.emplace(outline.centre, outline.a, outline.b, outline.angle);
+    }
+  }
+
+  //! That of line \e v, shrunk towards its middle by \e share; false: none.
+  bool stretch(double v, double share, double &first, double &last) const
+  {
+    if (m_ellipse ? !m_ellipse->stretch(v, 0, first, last) : !betweenSides(v, first, last)) {
       return false;
     }
-  } else {
+    const double cut = 0.5 * (1 - share) * (last - first);
+    first += cut;
+    last -= cut;
+    return true;
+  }
+
+private:
+  bool betweenSides(double v, double &first, double &last) const
+  {
     first = 1e9;
     last = -1e9;
     for (size_t i = 0; i < 4; ++i) {
-      const Eigen::Vector2d &p = outline.corners[i];
-      const Eigen::Vector2d &q = outline.corners[(i + 1) % 4];
+      const Eigen::Vector2d &p = m_outline.corners[i];
+      const Eigen::Vector2d &q = m_outline.corners[(i + 1) % 4];
       if ((p.y() - v) * (q.y() - v) <= 0 && p.y() != q.y()) {
         const double u = p.x() + (q.x() - p.x()) * (v - p.y()) / (q.y() - p.y());
         first = std::min(first, u);
         last = std::max(last, u);
       }
     }
-    if (first > last) {
-      return false;
-    }
+    return first <= last;
   }
-  const double cut = 0.5 * (1 - share) * (last - first);
-  first += cut;
-  last -= cut;
-  return true;
-}
+
+  const vpLampOutline &m_outline;
+  std::optional<vpEllipseModel> m_ellipse;
+};
 
 //! Samples of one line, inside the lamp.
 struct Chord {
   int line, first, last;
 };
+
+//! Squared distance from a lamp's middle along one line, 1 being its outline: scale (x - nearest)^2 + least.
+struct SquaredRadius {
+  float scale, nearest, least;
+};
+
+//! Of the light at some squared distance from the lamp's middle.
+struct LogFalloff {
+  float linear = 0, square = 0;
+};
+
+//! Sums over samples of a line of weight, weight x log, times powers of the squared radius.
+struct Moments {
+  std::array<float, 5> weights{};
+  std::array<float, 3> logs{};
+};
+
+VP_SIMD_CLONES void momentsOf(const float *weight, const float *log, size_t count, float first, float step,
+                              const SquaredRadius &radius, Moments &moments)
+{
+  std::array<Floats, 5> weights{};
+  std::array<Floats, 3> logs{};
+  static const Floats ramp = {0, 1, 2, 3, 4, 5, 6, 7};
+  for (size_t i = 0; i < count; i += vpLanes::count) {
+    const Floats from = first + step * (ramp + static_cast<float>(i)) - radius.nearest;
+    const Floats r2 = radius.scale * from * from + radius.least;
+    Floats w, l;
+    std::memcpy(&w, weight + i, sizeof(w));
+    std::memcpy(&l, log + i, sizeof(l));
+    l *= w;
+    for (size_t k = 0; k < weights.size(); ++k) {
+      weights[k] += w;
+      w *= r2;
+    }
+    for (size_t k = 0; k < logs.size(); ++k) {
+      logs[k] += l;
+      l *= r2;
+    }
+  }
+  for (size_t k = 0; k < weights.size(); ++k) {
+    moments.weights[k] = vpLanes::sum(weights[k]);
+  }
+  for (size_t k = 0; k < logs.size(); ++k) {
+    moments.logs[k] = vpLanes::sum(logs[k]);
+  }
+}
 
 /*!
   How an emitter dims from its middle to its rim, as exp(a r^2 + b r^4), r being 0 at its middle and 1 at its
@@ -64,158 +134,162 @@ public:
   Falloff() = default;
   Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, const vpOutlineFit &fit);
 
-  //! Whether the lamp is about as bright at its rim as in its middle.
-  bool even() const { return m_even; }
+  const LogFalloff &log() const { return m_log; }
 
-  //! Light at the samples of a chord, as a share of that at the lamp's middle.
-  void along(const Chord &chord, std::vector<double> &shares) const
+  SquaredRadius along(int line) const
   {
-    shares.assign(static_cast<size_t>(chord.last - chord.first + 1), 1);
-    for (int x = chord.first; !m_even && x <= chord.last; ++x) {
-      const double place = std::min(squaredRadius(x, chord.line) * perUnit, nodes - 1.001);
-      const auto node = static_cast<size_t>(place);
-      shares[static_cast<size_t>(x - chord.first)] =
-          m_shares[node] + (place - static_cast<double>(node)) * (m_shares[node + 1] - m_shares[node]);
-    }
+    const Eigen::Vector2d perSample = m_toDisc.col(0), start = m_toDisc * Eigen::Vector2d(0, line) - m_middle;
+    const double scale = perSample.squaredNorm(), nearest = -perSample.dot(start) / scale;
+    return {static_cast<float>(scale), static_cast<float>(nearest),
+            static_cast<float>((start + nearest * perSample).squaredNorm())};
   }
 
 private:
-  static constexpr size_t nodes = 256;
-  static constexpr double perUnit = 200; // of the squared radius, which inside the lamp is 1 at most
-
-  double squaredRadius(int sample, int line) const
-  {
-    return (m_toDisc * (Eigen::Vector2d(sample, line) - m_centre)).squaredNorm();
-  }
-
-  bool m_even = true;
-  std::array<double, nodes> m_shares{}; // by squared radius
-  Eigen::Vector2d m_centre = Eigen::Vector2d::Zero();
+  LogFalloff m_log;
   Eigen::Matrix2d m_toDisc = Eigen::Matrix2d::Identity(); // from the outline to the unit circle
+  Eigen::Vector2d m_middle = Eigen::Vector2d::Zero();     // as that has it
 };
 
 Falloff::Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords,
                  const vpOutlineFit &fit)
-    : m_centre(fit.outline.centre)
 {
   const vpLampOutline &outline = fit.outline;
   const double c = std::cos(outline.angle), s = std::sin(outline.angle);
   m_toDisc << c / outline.a, s / outline.a, -s / outline.b, c / outline.b;
+  m_middle = m_toDisc * outline.centre;
   static const double roughness = 0.02; // share of the light by which an emitter is not smooth, sigma
   static const double usual = 1;        // of a and b, standard deviation
   static const int enough = 64;         // samples of a line
   const double noise = std::max(fit.noise, 0.3), least = std::max(8 * noise, 6.0);
-  std::array<double, 256> logs{}; // of the light of each grey value
-  for (size_t grey = 0; grey < logs.size(); ++grey) {
-    logs[grey] = std::log(std::max(static_cast<double>(grey) - fit.background, least));
+  std::array<float, 256> weights{}, logs{}; // of each grey value
+  for (size_t grey = 0; grey < static_cast<size_t>(white); ++grey) {
+    const double light = static_cast<double>(grey) - fit.background;
+    if (light >= least) {
+      weights[grey] = static_cast<float>(1 / (noise * noise / (light * light) + roughness * roughness));
+      logs[grey] = static_cast<float>(std::log(light));
+    }
   }
   Eigen::Matrix2d H = Eigen::Matrix2d::Identity() / (usual * usual);
   Eigen::Vector2d g = Eigen::Vector2d::Zero();
+  std::vector<float> weight, log;
+  Moments sum;
   for (const Chord &chord : chords) {
     const int step = std::max(1, (chord.last - chord.first) / enough);
-    double weights = 0, sum = 0;
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero(), byLog = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-    for (int x = chord.first; x <= chord.last; x += step) {
-      const double light = lines(chord.line, x) - fit.background;
-      if (light < least || lines(chord.line, x) >= white) {
-        continue;
-      }
-      const double weight = 1 / (noise * noise / (light * light) + roughness * roughness);
-      const double r2 = squaredRadius(x, chord.line), log = logs[lines(chord.line, x)];
-      const Eigen::Vector2d powers(r2, r2 * r2);
-      weights += weight;
-      sum += weight * log;
-      mean += weight * powers;
-      byLog += weight * log * powers;
-      squares += weight * powers * powers.transpose();
+    const auto count = static_cast<size_t>((chord.last - chord.first) / step + 1);
+    weight.assign(count + vpLanes::count, 0);
+    log.assign(count + vpLanes::count, 0);
+    const unsigned char *row = lines[chord.line] + chord.first;
+    for (size_t i = 0; i < count; ++i) {
+      const unsigned char grey = row[i * static_cast<size_t>(step)];
+      weight[i] = weights[grey];
+      log[i] = logs[grey];
     }
-    if (weights > 0) {
-      mean /= weights;
-      H += squares - weights * mean * mean.transpose();
-      g += byLog - sum * mean;
+    momentsOf(weight.data(), log.data(), count, static_cast<float>(chord.first), static_cast<float>(step),
+              along(chord.line), sum);
+    const double all = sum.weights[0];
+    if (all > 0) {
+      const Eigen::Vector2d mean(sum.weights[1] / all, sum.weights[2] / all);
+      Eigen::Matrix2d squares;
+      squares << sum.weights[2], sum.weights[3], sum.weights[3], sum.weights[4];
+      H += squares - all * mean * mean.transpose();
+      g += Eigen::Vector2d(sum.logs[1], sum.logs[2]) - sum.logs[0] * mean;
     }
   }
   const Eigen::Vector2d solution = H.inverse() * g;
   static const double most = 4; // of the logarithm at the rim: what goes farther is no lamp's falloff
   // The envelope of the stripes makes up for so little.
   static const double little = 0.003;
-  m_even = !(solution.allFinite() && std::abs(solution.sum()) < most && solution.norm() < 3 * most) ||
-           solution.cwiseAbs().sum() < little;
-  for (size_t node = 0; !m_even && node < nodes; ++node) {
-    const double r2 = static_cast<double>(node) / perUnit;
-    m_shares[node] = std::exp((solution.x() + solution.y() * r2) * r2);
+  if (solution.allFinite() && std::abs(solution.sum()) < most && solution.norm() < 3 * most &&
+      solution.cwiseAbs().sum() >= little) {
+    m_log = {static_cast<float>(solution.x()), static_cast<float>(solution.y())};
   }
 }
 
 //! Sums over some samples of a line, for least squares of its brightness at the lamp's middle.
 struct Brightness {
-  double light = 0, squares = 0;
-  void add(double share, double seen)
+  float light = 0, squares = 0;
+  int samples = 0;
+  double value() const { return static_cast<double>(light) / squares; }
+  Brightness operator+(const Brightness &other) const
   {
-    light += share * seen;
-    squares += share * share;
+    return {light + other.light, squares + other.squares, samples + other.samples};
   }
-  double value() const { return light / squares; }
 };
 
-//! The samples of one line of the lamp.
+//! Of \e count samples from \e first on: of all, and of those that are not white.
+struct BothSums {
+  Brightness all, notWhite;
+  BothSums operator+(const BothSums &other) const { return {all + other.all, notWhite + other.notWhite}; }
+};
+
+VP_SIMD_CLONES void sumsOf(const unsigned char *row, int first, int count, float background,
+                           const SquaredRadius &radius, const LogFalloff &falloff, BothSums &sums)
+{
+  static const Floats ramp = {0, 1, 2, 3, 4, 5, 6, 7};
+  static constexpr float far = 12; // the exponential is that of what is below 0
+  const float scale = std::exp(far);
+  Floats light{}, squares{}, lightNotWhite{}, squaresNotWhite{}, notWhite{};
+  for (int i = 0; i < count; i += vpLanes::count) {
+    vpLanes::Bytes bytes{};
+    if (count - i >= vpLanes::count) {
+      std::memcpy(&bytes, row + first + i, sizeof(bytes));
+    } else {
+      std::memcpy(&bytes, row + first + i, static_cast<size_t>(count - i));
+    }
+    const Floats grey = __builtin_convertvector(bytes, Floats);
+    const Floats from = ramp + static_cast<float>(first + i) - radius.nearest;
+    const Floats r2 = vpLanes::least(radius.scale * from * from + radius.least, all(1.25f));
+    const Floats member = vpLanes::select(ramp < static_cast<float>(count - i), all(1), all(0));
+    const Floats share =
+        member * scale * vpLanes::exponential(r2 * (falloff.linear + falloff.square * r2) - far);
+    const Floats seen = share * (grey - background);
+    const vpLanes::Integers below = grey < static_cast<float>(white);
+    light += seen;
+    squares += share * share;
+    lightNotWhite += vpLanes::select(below, seen, all(0));
+    squaresNotWhite += vpLanes::select(below, share * share, all(0));
+    notWhite += vpLanes::select(below, member, all(0));
+  }
+  sums.all = {vpLanes::sum(light), vpLanes::sum(squares), count};
+  sums.notWhite = {vpLanes::sum(lightNotWhite), vpLanes::sum(squaresNotWhite),
+                   static_cast<int>(vpLanes::sum(notWhite))};
+}
+
+//! The samples of one line of the lamp: of its left and right half, and of what may be between them.
 class LineSamples
 {
 public:
   LineSamples(const unsigned char *row, const Chord &chord, const Falloff &falloff, double background)
-      : m_first(row + chord.first), m_count(chord.last - chord.first + 1), m_even(falloff.even()),
-        m_background(background)
   {
-    if (!m_even) {
-      falloff.along(chord, m_shares);
+    const int count = chord.last - chord.first + 1, half = count / 2;
+    const SquaredRadius radius = falloff.along(chord.line);
+    auto sums = [&](int first, int samples) {
+      BothSums sums;
+      sumsOf(row, first, samples, static_cast<float>(background), radius, falloff.log(), sums);
+      return sums;
+    };
+    const BothSums left = sums(chord.first, half), right = sums(chord.last - half + 1, half);
+    m_left = left.all;
+    m_right = right.all;
+    m_whole = left + right;
+    if (2 * half < count) {
+      m_whole = m_whole + sums(chord.first + half, 1);
     }
   }
-  int count() const { return m_count; }
-
-  //! Of samples \e from to before \e to.
-  Brightness sum(int from, int to) const
-  {
-    Brightness brightness;
-    if (m_even) {
-      int light = 0;
-      for (int i = from; i < to; ++i) {
-        light += m_first[i];
-      }
-      return {light - (to - from) * m_background, static_cast<double>(to - from)};
-    }
-    for (int i = from; i < to; ++i) {
-      brightness.add(m_shares[static_cast<size_t>(i)], m_first[i] - m_background);
-    }
-    return brightness;
-  }
+  int count() const { return m_whole.all.samples; }
+  const Brightness &left() const { return m_left; }
+  const Brightness &right() const { return m_right; }
 
   //! Of those that are not white; of all where these are too few.
-  Brightness whole() const
+  const Brightness &whole() const
   {
     static const int enough = 4; // samples
-    int count = 0;
-    for (int i = 0; i < m_count; ++i) {
-      count += m_first[i] < white;
-    }
-    if (count == m_count || count < enough) {
-      return sum(0, m_count);
-    }
-    Brightness brightness;
-    for (int i = 0; i < m_count; ++i) {
-      if (m_first[i] < white) {
-        brightness.add(m_even ? 1 : m_shares[static_cast<size_t>(i)], m_first[i] - m_background);
-      }
-    }
-    return brightness;
+    return m_whole.notWhite.samples < enough ? m_whole.all : m_whole.notWhite;
   }
 
 private:
-  const unsigned char *m_first;
-  int m_count;
-  bool m_even;
-  double m_background;
-  std::vector<double> m_shares;
+  Brightness m_left, m_right;
+  BothSums m_whole;
 };
 
 /*!
@@ -228,19 +302,17 @@ public:
   void add(const LineSamples &line, double noise)
   {
     static const int fewest = 8; // samples of a line
-    const int half = line.count() / 2;
     if (line.count() < fewest) {
       return;
     }
-    const double left = line.sum(0, half).value(),
-                 right = line.sum(line.count() - half, line.count()).value(), weight = line.count();
+    const double left = line.left().value(), right = line.right().value(), weight = line.count();
     m_weight += weight;
     m_left += weight * left;
     m_right += weight * right;
     m_leftLeft += weight * left * left;
     m_rightRight += weight * right * right;
     m_leftRight += weight * left * right;
-    m_noise += weight * noise * noise / half;
+    m_noise += weight * noise * noise / line.left().samples;
   }
 
   double value() const
@@ -284,11 +356,12 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   const double top = ellipse ? std::max(0.0, box(1)) : std::max<double>(roi.box.y, box(1));
   const double bottom =
       ellipse ? std::min(lines.rows - 1.0, box(3)) : std::min<double>(roi.box.br().y - 1, box(3));
+  const Inside inside(outline);
   auto chordsOf = [&](double share) {
     std::vector<Chord> chords;
     for (int line = static_cast<int>(std::ceil(top + margin)); line <= bottom - margin; ++line) {
       double first, last;
-      if (!chordOf(outline, line, share, first, last)) {
+      if (!inside.stretch(line, share, first, last)) {
         continue;
       }
       const int left = std::max(0, static_cast<int>(std::ceil(first)));
@@ -299,10 +372,10 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
     }
     return chords;
   };
-  static const double inside = 0.8, middle = 0.35; // of a chord
-  std::vector<Chord> chords = chordsOf(soft ? middle : inside);
+  static const double nearlyAll = 0.8, middle = 0.35; // of a chord
+  std::vector<Chord> chords = chordsOf(soft ? middle : nearlyAll);
   if (ellipse && !soft && hasWhiteLines(lines, chords)) {
-    chords = chordsOf(std::max(inside, 1 - (margin + 1) / outline.b)); // the rim may be dimmer than white
+    chords = chordsOf(std::max(nearlyAll, 1 - (margin + 1) / outline.b)); // the rim may be dimmer than white
   }
   const Falloff falloff = ellipse && !soft ? Falloff(lines, chords, fit) : Falloff();
   vpStripeProfile profile;

@@ -6,13 +6,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <visp3/vlp_core/vpSimdClones.h>
 
 #include "vpStripeLimits.h"
 
 BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! Of each column with \e x.
+VP_SIMD_CLONES void products(const double *columns, Eigen::Index rows, Eigen::Index count, const double *x,
+                             double *sums)
+{
+  constexpr Eigen::Index lanes = 4;
+  using Doubles = double __attribute__((vector_size(lanes * sizeof(double))));
+  const Eigen::Index whole = rows / lanes * lanes;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double *column = columns + k * rows;
+    Doubles sum{};
+    for (Eigen::Index i = 0; i < whole; i += lanes) {
+      Doubles a, b;
+      std::memcpy(&a, column + i, sizeof(a));
+      std::memcpy(&b, x + i, sizeof(b));
+      sum += a * b;
+    }
+    sums[k] = (sum[0] + sum[2]) + (sum[1] + sum[3]);
+    for (Eigen::Index i = whole; i < rows; ++i) {
+      sums[k] += column[i] * x[i];
+    }
+  }
+}
+} // namespace
 
 vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
                              const std::vector<double> &envelope)
@@ -59,6 +87,9 @@ void vpWaveformFit::prepareSums()
     m_ofWave.col(k) = m_weight * m_powers.col(k).array();
     m_ofWave.col(bends + k) = m_ofWave.col(k).array() * m_light;
   }
+  m_weights = m_weight.sum();
+  m_lights = (m_weight * m_light).sum();
+  m_squares = (m_weight * m_light.square()).sum();
 }
 
 //! The lamp's light at each time, averaged over the exposure, and its derivatives; both pulses', the
@@ -78,6 +109,17 @@ void vpWaveformFit::evaluateWave(const Vector &x, const Eigen::ArrayXd &time, vp
   wave.byTurn += second.byTurn;
   wave.byWidth += second.byWidth;
   wave.byDuty = own * (wave.byDuty + second.byDuty);
+}
+
+//! The light alone, of each line, into m_value.
+void vpWaveformFit::evaluateValue(const Vector &x)
+{
+  const double width = x(exposure) * x(frequency), own = x(duty) / pulses();
+  m_value.setZero(m_time.size());
+  vpPulseWave::addValue(m_time, x(frequency), x(phase), width, own, m_value);
+  if (m_settings.twoPulse) {
+    vpPulseWave::addValue(m_time, x(frequency), x(phase) - x(phaseDifference), width, own, m_value);
+  }
 }
 
 /*!
@@ -127,24 +169,25 @@ double vpWaveformFit::cost(const Vector &x)
   // Normal equations of offset and envelope; the envelope's bends are unlikely to be sharp.
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, mostLinear, mostLinear>;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, mostLinear, 1>;
-  evaluateWave(x, m_time, m_wave, m_second);
-  const Eigen::Index bends = m_linear - 1;
+  evaluateValue(x);
+  m_square = m_value.square();
+  const Eigen::Index bends = m_linear - 1, lines = m_time.size();
+  std::array<double, 2 * mostLinear> ofWave, ofSquare;
+  products(m_ofWave.data(), lines, m_ofWave.cols(), m_value.data(), ofWave.data());
+  products(m_ofSquare.data(), lines, m_ofSquare.cols(), m_square.data(), ofSquare.data());
   Small A(m_linear, m_linear);
   Column b(m_linear);
-  A(0, 0) = m_weight.sum();
-  b(0) = (m_weight * m_light).sum();
+  A(0, 0) = m_weights;
+  b(0) = m_lights;
   for (Eigen::Index k = 0; k < bends; ++k) {
-    A(k + 1, 0) = m_ofWave.col(k).dot(m_wave.value.matrix());
-    b(k + 1) = m_ofWave.col(bends + k).dot(m_wave.value.matrix());
+    A(k + 1, 0) = ofWave[static_cast<size_t>(k)];
+    b(k + 1) = ofWave[static_cast<size_t>(bends + k)];
   }
-  m_square = m_wave.value.square();
   for (Eigen::Index p = 0; p < m_ofSquare.cols(); ++p) {
-    const double sum = m_ofSquare.col(p).dot(m_square.matrix());
     for (Eigen::Index k = std::max<Eigen::Index>(0, p - bends + 1); 2 * k <= p; ++k) {
-      A(p - k + 1, k + 1) = sum;
+      A(p - k + 1, k + 1) = ofSquare[static_cast<size_t>(p)];
     }
   }
-  const double squares = (m_weight * m_light.square()).sum();
   A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
   A(0, 0) += m_darkness;
   for (int k = 2; k < m_linear; ++k) {
@@ -167,7 +210,7 @@ double vpWaveformFit::cost(const Vector &x)
   if (!(c(1) > 0)) {
     return 1e300; // a lamp that shines where it should be dark
   }
-  m_chiSquare = std::max(0.0, squares - 2 * c.dot(b) + c.dot(A * c));
+  m_chiSquare = std::max(0.0, m_squares - 2 * c.dot(b) + c.dot(A * c));
   double sum = m_chiSquare;
   for (int p = 0; p < parameters; ++p) {
     sum += prior(p, x).chiSquare;
@@ -175,8 +218,13 @@ double vpWaveformFit::cost(const Vector &x)
   return sum;
 }
 
-//! Of the nonlinear parameters, the linear ones eliminated; at the place of the latest cost(), with
-//! derivatives.
+void vpWaveformFit::settle()
+{
+  m_cost = cost(m_x);
+  evaluateWave(m_x, m_time, m_wave, m_second);
+}
+
+//! Of the nonlinear parameters at m_x, the linear ones, of the latest cost(), eliminated.
 void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
 {
   // Columns: the nonlinear parameters, the offset, the envelope's coefficients.
@@ -184,6 +232,7 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
   const Eigen::Index bends = m_linear - 1, all = parameters + m_linear;
   m_jacobian.resize(m_time.size(), all);
   const Eigen::ArrayXd light = envelope();
+  evaluateWave(m_x, m_time, m_wave, m_second);
   m_residual = m_light - m_coefficient[0] - light * m_wave.value;
   m_jacobian.col(phase) = light * m_wave.byTurn;
   m_jacobian.col(exposure) = light * m_wave.byWidth;
@@ -308,7 +357,7 @@ void vpWaveformFit::descend(int iterations)
       break;
     }
   }
-  m_cost = cost(m_x);
+  settle();
 }
 
 //! Chi-square of a pulse and an exposure, and not each the other.

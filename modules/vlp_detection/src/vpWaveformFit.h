@@ -101,8 +101,11 @@ private:
   void prepareSums();
   void evaluateWave(const Vector &x, const Eigen::ArrayXd &time, vpPulseWave &wave,
                     vpPulseWave &second) const;
-  //! Cost where offset and envelope fit best. Fills m_wave.
+  void evaluateValue(const Vector &x);
+  //! Cost where offset and envelope fit best. Fills m_coefficient.
   double cost(const Vector &x);
+  //! At m_x, with all that goes with it.
+  void settle();
   void normalEquations(Matrix &H, Vector &g);
   void descend(int iterations);
   bool bendEnvelope();
@@ -144,18 +147,18 @@ private:
   Eigen::ArrayXd m_given;               // envelope, grey levels
   Eigen::MatrixXd m_powers;             // the same times powers of the time
   Eigen::MatrixXd m_ofWave, m_ofSquare; // by which to sum the wave, its square
+  double m_weights = 0, m_lights = 0, m_squares = 0; // sums of weights, times light, times its square
   Vector m_x = Vector::Zero();
   Vector m_sigma = Vector::Zero();
   Matrix m_curvature = Matrix::Zero(); // of half the cost, priors included
   double m_cost = 0;
   double m_chiSquare = 0; // of the profile alone
   double m_inflation = 1; // of all variances, by what the model leaves out
-  // Of the latest cost(): at each line the wave (of two pulses: both, and the second one); the linear
-  // parameters.
+  // At m_x: at each line the wave (of two pulses: both, and the second one).
   vpPulseWave m_wave, m_second;
-  std::array<double, mostLinear> m_coefficient{};
+  std::array<double, mostLinear> m_coefficient{}; // the linear parameters of the latest cost()
   // Kept from step to step for their memory.
-  Eigen::ArrayXd m_square, m_column, m_residual;
+  Eigen::ArrayXd m_value, m_square, m_column, m_residual;
   Eigen::MatrixXd m_jacobian;
 };
 
