@@ -11,11 +11,7 @@
 #include <cstring>
 #include <vector>
 
-#include <visp3/vlp_core/vpSimdClones.h>
-
-#include "vpLanes.h"
-
-#pragma GCC diagnostic ignored "-Wpsabi" // vectors are passed within this file only
+#include <opencv2/core/hal/intrin.hpp>
 
 BEGIN_VISP_NAMESPACE
 
@@ -64,25 +60,33 @@ Sums sumsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
 
 constexpr int side = 8; // px, of a block; of smaller pictures their own
 
-//! The same of blocks of \e side lines and samples, one after the other along the line.
-VP_SIMD_CLONES void sumsOfBlocks(const unsigned char *first, size_t step, size_t apart, size_t blocks,
-                                 Sums *sums)
+//! Of eight bytes: in pairs, then the four sums by one product.
+int sumOf(const unsigned char *row)
 {
-  for (size_t block = 0; block < blocks; ++block) {
-    vpLanes::Integers grey{}, squares{}, black{};
-    std::int64_t ofLines = 0;
-    for (size_t y = 0; y < side; ++y) {
-      vpLanes::Bytes bytes;
-      std::memcpy(&bytes, first + block * apart + y * step, sizeof(bytes));
-      const vpLanes::Integers line = __builtin_convertvector(bytes, vpLanes::Integers);
-      grey += line;
-      squares += line * line;
-      black -= line == 0;
-      const std::int64_t sum = vpLanes::sum(bytes);
-      ofLines += sum * sum;
-    }
-    sums[block] = {vpLanes::sum(grey), vpLanes::sum(squares), vpLanes::sum(black), ofLines};
+  std::uint64_t all;
+  std::memcpy(&all, row, sizeof(all));
+  const std::uint64_t pairs = (all & 0x00ff00ff00ff00ffU) + (all >> 8 & 0x00ff00ff00ff00ffU);
+  return static_cast<int>(pairs * 0x0001000100010001U >> 48);
+}
+
+//! The same of a block of \e side lines and samples, from \e first on.
+Sums sumsOfWhole(const unsigned char *first, size_t step)
+{
+  Sums sums;
+  cv::v_int32x4 squares = cv::v_setzero_s32();
+  cv::v_int16x8 black = cv::v_setzero_s16();
+  for (size_t y = 0; y < side; ++y) {
+    const unsigned char *row = first + y * step;
+    const cv::v_int16x8 line = cv::v_reinterpret_as_s16(cv::v_load_expand(row));
+    squares += cv::v_dotprod(line, line);
+    black += line == cv::v_setzero_s16(); // -1 where it is
+    const int sum = sumOf(row);
+    sums.grey += sum;
+    sums.ofLines += static_cast<std::int64_t>(sum) * sum;
   }
+  sums.squares = cv::v_reduce_sum(squares);
+  sums.black = -cv::v_reduce_sum(black);
+  return sums;
 }
 
 Block blockOf(const Sums &sums, int width, int height)
@@ -110,17 +114,12 @@ vpBackground vpBackground::of(const cv::Mat_<unsigned char> &lines)
   const int height = std::min(side, lines.rows);
   const int step = std::max(side, static_cast<int>(std::sqrt(static_cast<double>(lines.total()) / most)));
   std::vector<Block> blocks;
-  std::vector<Sums> sums(static_cast<size_t>((lines.cols - width) / step + 1));
+  const bool whole = width == side && height == side;
   for (int y = 0; y + height <= lines.rows; y += step) {
-    if (width == side && height == side) {
-      sumsOfBlocks(lines[y], lines.step, static_cast<size_t>(step), sums.size(), sums.data());
-    } else {
-      for (size_t i = 0; i < sums.size(); ++i) {
-        sums[i] = sumsOf(lines, cv::Rect(static_cast<int>(i) * step, y, width, height));
-      }
-    }
-    for (const Sums &block : sums) {
-      blocks.push_back(blockOf(block, width, height));
+    for (int x = 0; x + width <= lines.cols; x += step) {
+      const Sums sums =
+          whole ? sumsOfWhole(lines[y] + x, lines.step) : sumsOf(lines, cv::Rect(x, y, width, height));
+      blocks.push_back(blockOf(sums, width, height));
     }
   }
   std::vector<double> means;

@@ -17,21 +17,19 @@ namespace vpBrighter
 {
 constexpr int block = 64; // samples
 
-//! Bit i is set where sample i of a block is brighter than \e grey.
+//! Bit i is set where sample i of a block, of which there are so many, is brighter than \e grey.
 inline std::uint64_t mask(const unsigned char *row, int samples, unsigned char grey)
 {
   std::uint64_t bits = 0;
-  if (samples < block) {
-    for (int i = 0; i < samples; ++i) {
-      bits |= static_cast<std::uint64_t>(row[i] > grey) << i;
-    }
-    return bits;
-  }
   const cv::v_uint8x16 threshold = cv::v_setall_u8(grey);
   static constexpr int width = cv::v_uint8x16::nlanes;
-  for (int i = 0; i < block; i += width) {
+  int i = 0;
+  for (; i + width <= samples; i += width) {
     const auto part = static_cast<std::uint64_t>(cv::v_signmask(cv::v_load(row + i) > threshold));
     bits |= part << i;
+  }
+  for (; i < samples; ++i) {
+    bits |= static_cast<std::uint64_t>(row[i] > grey) << i;
   }
   return bits;
 }

@@ -266,27 +266,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   that outgrows any lens, a middle that wanders off or stays unknown.
 */
 template <class Model>
-bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, int maxIterations, double likelyBlur)
-{
-  static const double still = 1e-3; // px
-  const double radius = m_model.radius();
-  m_blur = likelyBlur > 0 ? likelyBlur : std::clamp(0.03 * radius, 0.7, 4.0);
-  return descend(box, shapeSigma, maxIterations, 0, still);
-}
-
-template <class Model>
-bool vpEdgeFit<Model>::runNear(const cv::Rect &box, double shapeSigma, int maxIterations, double blur)
-{
-  static const int sparse = 2;       // steps by a part of the lines
-  static const double nearly = 0.02; // px: the step after one as short would be a fiftieth of it
-  m_blur = blur;
-  return descend(box, shapeSigma, maxIterations, sparse, nearly);
-}
-
-//! \param sparse So many of the first steps are by a third of the lines. \param still px, of the last step.
-template <class Model>
-bool vpEdgeFit<Model>::descend(const cv::Rect &box, double shapeSigma, int maxIterations, int sparse,
-                               double still)
+bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &steps, double blur)
 {
   static const double fewest = 3;     // ends
   static const double sharpest = 0.1; // px of blur; the pixels themselves hide anything sharper
@@ -296,12 +276,13 @@ bool vpEdgeFit<Model>::descend(const cv::Rect &box, double shapeSigma, int maxIt
   const double radius = m_model.radius();
   const double widest = 0.15 * radius + 1;
   const Eigen::Vector2d start = m_model.centre();
-  m_blur = std::clamp(m_blur, sharpest, widest);
-  m_litOnly = sparse > 0;
+  m_blur = std::clamp(blur > 0 ? blur : std::clamp(0.03 * radius, 0.7, 4.0), sharpest, widest);
+  int sparse = steps.sparse;
   static const double many = 12; // ends, of all directions by chance alone
   int soft = 0;
-  for (int i = 0; i < maxIterations; ++i) {
+  for (int i = 0; i < steps.most; ++i) {
     m_every = i < sparse ? 3 : 1;
+    m_litOnly = steps.litOnly || i < sparse;
     m_reach = std::clamp(3 * m_blur + 2, 4.0, std::max(4.0, 0.4 * m_model.radius()));
     findEnds();
     assemble(equations);
@@ -329,14 +310,14 @@ bool vpEdgeFit<Model>::descend(const cv::Rect &box, double shapeSigma, int maxIt
     const typename Model::Vector outlineStep =
         step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
     m_model.advance(outlineStep);
-    const double blur = m_blur;
-    m_blur = std::clamp(blur + std::clamp(step(N - 1), -0.5 * blur, 0.5 * blur), sharpest, widest);
+    const double before = m_blur;
+    m_blur = std::clamp(before + std::clamp(step(N - 1), -0.5 * before, 0.5 * before), sharpest, widest);
     if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
       return false;
     }
     static const double ofBlur = 10; // which moves no edge
-    if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < still &&
-        std::abs(m_blur - blur) < ofBlur * still) {
+    if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < steps.still &&
+        std::abs(m_blur - before) < ofBlur * steps.still) {
       break;
     }
   }

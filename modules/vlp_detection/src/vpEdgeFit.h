@@ -82,10 +82,15 @@ public:
   {
   }
 
-  //! \param likelyBlur px, to begin with; 0: one that suits the size.
-  bool run(const cv::Rect &box, double shapeSigma, int maxIterations, double likelyBlur = 0);
-  //! The same from a start that is good to a pixel or so: first by some of the lines, then by all.
-  bool runNear(const cv::Rect &box, double shapeSigma, int maxIterations, double blur);
+  //! How to get to the minimum. From a start that is good to a pixel or so a part of the lines will do first.
+  struct Steps {
+    int most;
+    int sparse = 0;       // so many of the first are by a third of the lines, of those that are lit
+    double still = 1e-3;  // px, of the last
+    bool litOnly = false; // by lit lines only, all of them
+  };
+  //! \param blur px, to begin with; 0: one that suits the size.
+  bool run(const cv::Rect &box, double shapeSigma, const Steps &steps, double blur = 0);
   vpOutlineFit result() const;
   //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc.
   double evenness() const;
@@ -105,7 +110,6 @@ private:
   void addAlong(int line, const vpLineStretch &pixels);
   void addEnds(int from, int to);
   void findEnds();
-  bool descend(const cv::Rect &box, double shapeSigma, int maxIterations, int sparse, double still);
   void assemble(Equations &equations);
 
   const cv::Mat_<unsigned char> *m_lines;

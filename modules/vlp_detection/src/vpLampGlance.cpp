@@ -51,7 +51,8 @@ bool vpLampGlance::find(const vpLinePicture &picture, const vpLineTiming &timing
 bool vpLampGlance::findOutline(const vpLinePicture &picture, const vpLineTiming &timing,
                                const vpLampObservation &before, double shapeSigma)
 {
-  static const int steps = 6;
+  // The step after one as short would be a fiftieth of it.
+  static const vpEdgeFit<vpEllipseModel>::Steps steps{6, 2, 0.02, true};
   static const double nearlyAll = 0.97, evenEdge = 0.45, rare = 6; // as vpOutlineFitter's
   static const double growth = 0.03;                               // share of an axis, from frame to frame
   static const double sharper = 0.7, softer = 1.4, tenth = 0.1;    // of the blur; px
@@ -62,7 +63,7 @@ bool vpLampGlance::findOutline(const vpLinePicture &picture, const vpLineTiming 
                         static_cast<int>(std::ceil(box(3) - box(1))));
   vpEdgeFit<vpEllipseModel> ellipse(picture.grey, timing.linePositions(), timing.samplePositions(),
                                     vpEllipseModel(outline.centre, outline.a, outline.b, outline.angle));
-  if (!ellipse.runNear(around, shapeSigma, steps, before.blur) || ellipse.kept() < nearlyAll ||
+  if (!ellipse.run(around, shapeSigma, steps, before.blur) || ellipse.kept() < nearlyAll ||
       ellipse.shining() < nearlyAll || ellipse.prior() > rare || ellipse.evenness() < evenEdge) {
     return false;
   }

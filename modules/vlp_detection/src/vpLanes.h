@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include <visp3/vlp_core/vpVlpNamespace.h>
 
@@ -22,7 +23,7 @@ namespace vpLanes
 constexpr int count = 8;
 using Floats = float __attribute__((vector_size(count * sizeof(float))));
 using Integers = std::int32_t __attribute__((vector_size(count * sizeof(std::int32_t))));
-using Bytes = std::uint8_t __attribute__((vector_size(count)));
+using Unsigned = std::uint32_t __attribute__((vector_size(count * sizeof(std::uint32_t))));
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi" // how functions would pass vectors: none of these is ever called
@@ -60,17 +61,15 @@ VP_LANES_INLINE float sum(const Floats &x)
   return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
 }
 
-VP_LANES_INLINE std::int32_t sum(const Integers &x)
+//! Eight grey values in a row.
+VP_LANES_INLINE Floats grey(const unsigned char *pixel)
 {
-  return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
-}
-
-//! Pairs of bytes first, then the four sums by one product.
-VP_LANES_INLINE std::int32_t sum(const Bytes &x)
-{
-  const auto all = reinterpret_cast<std::uint64_t>(x);
-  const std::uint64_t pairs = (all & 0x00ff00ff00ff00ffU) + (all >> 8 & 0x00ff00ff00ff00ffU);
-  return static_cast<std::int32_t>(pairs * 0x0001000100010001U >> 48);
+  std::uint32_t first, second;
+  std::memcpy(&first, pixel, sizeof(first));
+  std::memcpy(&second, pixel + sizeof(first), sizeof(second));
+  const Unsigned words = {first, first, first, first, second, second, second, second},
+                 shifts = {0, 8, 16, 24, 0, 8, 16, 24};
+  return __builtin_convertvector(reinterpret_cast<Integers>(words >> shifts & 0xff), Floats);
 }
 
 VP_LANES_INLINE Floats root(const Floats &x)

@@ -13,6 +13,7 @@
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpRect.h>
 
+#include "vpBrighter.h"
 #include "vpLampGlance.h"
 
 BEGIN_VISP_NAMESPACE
@@ -107,17 +108,27 @@ vpLedRoi joined(const vpLedRoi &a, const vpLedRoi &b)
   return roi;
 }
 
+//! Of a line, those brighter than \e grey.
+int countOf(const unsigned char *row, const vpLedChord &chord, unsigned char grey)
+{
+  int pixels = 0;
+  for (int x = chord.first; x <= chord.last; x += vpBrighter::block) {
+    pixels += __builtin_popcountll(
+        vpBrighter::mask(row + x, std::min(vpBrighter::block, chord.last - x + 1), grey));
+  }
+  return pixels;
+}
+
 //! Lit pixels of a region, and the share of them at the end of the grey scale.
 void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObservation &lamp)
 {
-  static const int nearlyWhite = 254; // of JPEG's white, too
+  static const unsigned char nearlyWhite = 254; // of JPEG's white, too
+  const auto level = static_cast<unsigned char>(std::clamp(std::floor(roi.level), 0.0, 255.0));
   int pixels = 0, white = 0;
   for (const vpLedChord &chord : roi.chords) {
     const unsigned char *row = picture.grey[chord.line];
-    for (int x = chord.first; x <= chord.last; ++x) {
-      pixels += row[x] > roi.level;
-      white += row[x] >= nearlyWhite;
-    }
+    pixels += countOf(row, chord, level);
+    white += countOf(row, chord, nearlyWhite - 1);
   }
   lamp.features.area = pixels;
   lamp.saturated = pixels > 0 ? static_cast<double>(white) / pixels : 0;

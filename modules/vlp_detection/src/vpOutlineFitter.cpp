@@ -147,16 +147,14 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
   const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
   vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start);
-  auto fits = [&](double blur) {
-    return ellipse.run(roi.box, shapeSigma, maxIterations, blur) && holds(ellipse.result(), roi);
-  };
   // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
   static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
   const bool whole = roi.lampness > nearlyPerfect * vpChordShape::mostLampness(2 * roi.box.height);
-  bool isEllipse = likelyBlur > 0 && whole && fits(likelyBlur) && ellipse.kept() >= nearlyAll;
+  bool isEllipse = whole && ellipse.run(roi.box, shapeSigma, {maxIterations, 2}, likelyBlur) &&
+                   ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
   if (!isEllipse) {
     ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, start);
-    isEllipse = fits(0);
+    isEllipse = ellipse.run(roi.box, shapeSigma, {maxIterations}) && holds(ellipse.result(), roi);
   }
   if (isEllipse) {
     best = ellipse.result();
@@ -167,7 +165,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   if (sidesMisfit <= 3 * ellipseMisfit) {
     vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions,
                                           vpQuadrilateralModel::from(ends));
-    if (sides.run(roi.box, shapeSigma, maxIterations) && sides.evenness() > evenEdge &&
+    if (sides.run(roi.box, shapeSigma, {maxIterations}) && sides.evenness() > evenEdge &&
         holds(sides.result(), roi)) {
       if (even) {
         best = likelier(ellipse, sides);

@@ -186,7 +186,8 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
 */
 std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
                                             const std::vector<double> &envelope, int envelopeOrder,
-                                            const vpStripeAnalyzer &analyzer, double unexplained)
+                                            const vpStripeAnalyzer &analyzer, double unexplained,
+                                            size_t stripes)
 {
   static const double wordMisfit = 0.1;
   static const double explained = 2, nearlyExplained = 3; // chi-square per degree of freedom
@@ -194,7 +195,9 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
   const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, exposureTolerance}, envelope);
   const bool neither = !(unexplained < analyzer.maxMisfit);
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
-  if (neither && (!word || word->inflation > explained)) {
+  // A word without a name has two pulses or more, and fewer than three stripes would repeat none of them.
+  static const size_t fewest = 3;
+  if (neither && stripes >= fewest && (!word || word->inflation > explained)) {
     const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
     static const double clearlyLess = 0.8;
     if (!word || (other && other->inflation < clearlyLess * word->inflation)) {
@@ -332,7 +335,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
   if (!(features.misfit < beyondDoubt)) {
     const std::optional<vpWordSearch::Found> word =
-        findWord(profile, byAll.envelope, byAll.settings.envelopeOrder, *this, features.misfit);
+        findWord(profile, byAll.envelope, byAll.settings.envelopeOrder, *this, features.misfit,
+                 peaks.size());
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }

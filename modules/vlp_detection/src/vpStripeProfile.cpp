@@ -159,7 +159,7 @@ Falloff::Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> 
   m_middle = m_toDisc * outline.centre;
   static const double roughness = 0.02; // share of the light by which an emitter is not smooth, sigma
   static const double usual = 1;        // of a and b, standard deviation
-  static const int enough = 64;         // samples of a line
+  static const int enough = 32;         // samples of a line
   const double noise = std::max(fit.noise, 0.3), least = std::max(8 * noise, 6.0);
   std::array<float, 256> weights{}, logs{}; // of each grey value
   for (size_t grey = 0; grey < static_cast<size_t>(white); ++grey) {
@@ -228,15 +228,15 @@ VP_SIMD_CLONES void sumsOf(const unsigned char *row, int first, int count, float
   static const Floats ramp = {0, 1, 2, 3, 4, 5, 6, 7};
   static constexpr float far = 12; // the exponential is that of what is below 0
   const float scale = std::exp(far);
-  Floats light{}, squares{}, lightNotWhite{}, squaresNotWhite{}, notWhite{};
+  Floats grey, light{}, squares{}, lightNotWhite{}, squaresNotWhite{}, notWhite{};
   for (int i = 0; i < count; i += vpLanes::count) {
-    vpLanes::Bytes bytes{};
     if (count - i >= vpLanes::count) {
-      std::memcpy(&bytes, row + first + i, sizeof(bytes));
+      grey = vpLanes::grey(row + first + i);
     } else {
-      std::memcpy(&bytes, row + first + i, static_cast<size_t>(count - i));
+      std::array<unsigned char, vpLanes::count> rest{};
+      std::memcpy(rest.data(), row + first + i, static_cast<size_t>(count - i));
+      grey = vpLanes::grey(rest.data());
     }
-    const Floats grey = __builtin_convertvector(bytes, Floats);
     const Floats from = ramp + static_cast<float>(first + i) - radius.nearest;
     const Floats r2 = vpLanes::least(radius.scale * from * from + radius.least, all(1.25f));
     const Floats member = vpLanes::select(ramp < static_cast<float>(count - i), all(1), all(0));

@@ -253,9 +253,10 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> r(all);
   for (Eigen::Index k = 0; k < all; ++k) {
     m_column = m_weight * m_jacobian.col(k).array();
-    r(k) = m_column.matrix().dot(m_residual.matrix());
-    for (Eigen::Index l = 0; l <= k; ++l) {
-      N(k, l) = N(l, k) = m_column.matrix().dot(m_jacobian.col(l));
+    products(m_residual.data(), m_time.size(), 1, m_column.data(), &r(k));
+    products(m_jacobian.data(), m_time.size(), k + 1, m_column.data(), &N(0, k));
+    for (Eigen::Index l = 0; l < k; ++l) {
+      N(k, l) = N(l, k);
     }
   }
   N(parameters, parameters) += m_darkness;
