@@ -213,6 +213,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   }
   const double scale = 1.4826 * std::max(median(m_sorted), 0.02);
   equations = Equations();
+  Equations crossing; // the lower half of what they say that cross their lines
   m_sorted.clear();
   double squares = 0, weights = 0, pixels = 0, chiSquare = 0, members = 0, kept = 0;
   for (size_t i = 0; i < m_ends.size(); ++i) {
@@ -235,19 +236,23 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
       equations.H += weight * m_along[static_cast<size_t>(end.along)].H;
       equations.g += weight * m_along[static_cast<size_t>(end.along)].g;
     } else {
-      const typename Model::Vector outward = weight * end.outward;
-      equations.H.template topLeftCorner<N - 1, N - 1>() +=
-          end.shiftShift * outward * end.outward.transpose();
-      equations.H.template topRightCorner<N - 1, 1>() += end.shiftBlur * outward;
-      equations.H.template bottomLeftCorner<1, N - 1>() += end.shiftBlur * outward.transpose();
-      equations.H(N - 1, N - 1) += weight * end.blurBlur;
-      equations.g.template head<N - 1>() += end.shift * outward;
-      equations.g(N - 1) += weight * end.blur;
+      for (int k = 0; k < N - 1; ++k) {
+        const double outward = weight * end.outward(k), shift = end.shiftShift * outward;
+        for (int l = k; l < N - 1; ++l) {
+          crossing.H(l, k) += shift * end.outward(l);
+        }
+        crossing.H(N - 1, k) += end.shiftBlur * outward;
+        crossing.g(k) += end.shift * outward;
+      }
+      crossing.H(N - 1, N - 1) += weight * end.blurBlur;
+      crossing.g(N - 1) += weight * end.blur;
     }
     squares += weight * end.shift * end.offset();
     weights += weight * end.shiftShift;
     members += tukey;
   }
+  equations.H += crossing.H.template selfadjointView<Eigen::Lower>();
+  equations.g += crossing.g;
   m_residual = weights > 0 ? std::sqrt(squares / weights) : 0;
   // Ends scatter more than their pixels' noise says where the edge is no Gaussian: the covariance is to say
   // so, and the fewer they are the less they know of their own scatter.

@@ -10,6 +10,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "vpColumnProducts.h"
+
 BEGIN_VISP_NAMESPACE
 
 bool vpStripeCheck::compare(const vpStripeProfile &profile, const vpStripeFeatures &known)
@@ -27,7 +29,6 @@ bool vpStripeCheck::compare(const vpStripeProfile &profile, const vpStripeFeatur
   const auto noise = Eigen::Map<const Eigen::ArrayXd>(profile.sigma.data(), n);
   m_weight = (noise.square() + (modelError * m_light).square() + 1).inverse();
   m_columns.resize(n, all);
-  m_weighted.resize(n, all);
 
   // The first harmonic peaks in the middle of the pulse.
   const double mean = m_light.mean(), turn = 2 * M_PI * known.frequency;
@@ -76,13 +77,15 @@ void vpStripeCheck::solve(double frequency, double phase, double width, double d
       m_columns.col(linear) = m_envelope * m_wave.byTurn;
       m_columns.col(linear + 1) = m_columns.col(linear).array() * m_time;
     }
-    m_weighted.leftCols(columns) = m_columns.leftCols(columns).array().colwise() * m_weight;
     m_normal.setIdentity();
-    m_normal.topLeftCorner(columns, columns).noalias() =
-        m_weighted.leftCols(columns).transpose() * m_columns.leftCols(columns);
-    m_normal.diagonal().head(columns) *= 1 + 1e-9;
     m_solution.setZero();
-    m_solution.head(columns).noalias() = m_weighted.leftCols(columns).transpose() * m_light.matrix();
+    for (int k = 0; k < columns; ++k) {
+      m_weighted = m_columns.col(k).array() * m_weight;
+      vpColumnProducts(m_columns.data(), m_columns.rows(), k + 1, m_weighted.data(), &m_normal(0, k));
+      vpColumnProducts(m_light.data(), m_columns.rows(), 1, m_weighted.data(), &m_solution(k));
+    }
+    m_normal.triangularView<Eigen::StrictlyLower>() = m_normal.transpose();
+    m_normal.diagonal().head(columns) *= 1 + 1e-9;
     m_solution = m_normal.ldlt().solve(m_solution).eval();
     if (columns == unknowns) {
       break;

@@ -38,8 +38,8 @@ private:
   void solve(double frequency, double phase, double width, double duty, int unknowns);
 
   // Kept for their memory.
-  Eigen::ArrayXd m_time, m_light, m_weight, m_envelope;
-  Eigen::Matrix<double, Eigen::Dynamic, all> m_columns, m_weighted;
+  Eigen::ArrayXd m_time, m_light, m_weight, m_envelope, m_weighted;
+  Eigen::Matrix<double, Eigen::Dynamic, all> m_columns;
   vpPulseWave m_wave;
   double m_half = 1; // s
   Vector m_solution;

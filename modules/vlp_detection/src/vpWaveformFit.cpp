@@ -6,41 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <visp3/vlp_core/vpSimdClones.h>
 
+#include "vpColumnProducts.h"
 #include "vpStripeLimits.h"
 
 BEGIN_VISP_NAMESPACE
-
-namespace
-{
-//! Of each column with \e x.
-VP_SIMD_CLONES void products(const double *columns, Eigen::Index rows, Eigen::Index count, const double *x,
-                             double *sums)
-{
-  constexpr Eigen::Index lanes = 4;
-  using Doubles = double __attribute__((vector_size(lanes * sizeof(double))));
-  const Eigen::Index whole = rows / lanes * lanes;
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double *column = columns + k * rows;
-    Doubles sum{};
-    for (Eigen::Index i = 0; i < whole; i += lanes) {
-      Doubles a, b;
-      std::memcpy(&a, column + i, sizeof(a));
-      std::memcpy(&b, x + i, sizeof(b));
-      sum += a * b;
-    }
-    sums[k] = (sum[0] + sum[2]) + (sum[1] + sum[3]);
-    for (Eigen::Index i = whole; i < rows; ++i) {
-      sums[k] += column[i] * x[i];
-    }
-  }
-}
-} // namespace
 
 vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
                              const std::vector<double> &envelope)
@@ -173,8 +146,8 @@ double vpWaveformFit::cost(const Vector &x)
   m_square = m_value.square();
   const Eigen::Index bends = m_linear - 1, lines = m_time.size();
   std::array<double, 2 * mostLinear> ofWave, ofSquare;
-  products(m_ofWave.data(), lines, m_ofWave.cols(), m_value.data(), ofWave.data());
-  products(m_ofSquare.data(), lines, m_ofSquare.cols(), m_square.data(), ofSquare.data());
+  vpColumnProducts(m_ofWave.data(), lines, m_ofWave.cols(), m_value.data(), ofWave.data());
+  vpColumnProducts(m_ofSquare.data(), lines, m_ofSquare.cols(), m_square.data(), ofSquare.data());
   Small A(m_linear, m_linear);
   Column b(m_linear);
   A(0, 0) = m_weights;
@@ -253,8 +226,8 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> r(all);
   for (Eigen::Index k = 0; k < all; ++k) {
     m_column = m_weight * m_jacobian.col(k).array();
-    products(m_residual.data(), m_time.size(), 1, m_column.data(), &r(k));
-    products(m_jacobian.data(), m_time.size(), k + 1, m_column.data(), &N(0, k));
+    vpColumnProducts(m_residual.data(), m_time.size(), 1, m_column.data(), &r(k));
+    vpColumnProducts(m_jacobian.data(), m_time.size(), k + 1, m_column.data(), &N(0, k));
     for (Eigen::Index l = 0; l < k; ++l) {
       N(k, l) = N(l, k);
     }

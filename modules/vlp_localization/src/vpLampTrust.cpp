@@ -5,6 +5,7 @@
 #include "vpLampTrust.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -25,6 +26,18 @@ Eigen::Vector2d seenExtent(const vpLampOutline &outline)
   const Eigen::Vector4d box = outline.box();
   return {box(2) - box(0), box(3) - box(1)};
 }
+
+constexpr size_t rimPoints = 24;
+
+std::array<Eigen::Vector3d, rimPoints> unitCircle()
+{
+  std::array<Eigen::Vector3d, rimPoints> points;
+  for (size_t k = 0; k < rimPoints; ++k) {
+    const double angle = 2 * M_PI * static_cast<double>(k) / rimPoints;
+    points[k] = {std::cos(angle), std::sin(angle), 0};
+  }
+  return points;
+}
 } // namespace
 
 bool vpLampTrust::pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &cMw, const vpVlpRig &rig,
@@ -41,19 +54,36 @@ bool vpLampTrust::pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatri
   return true;
 }
 
+bool vpLampTrust::motionOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &wMb,
+                           const Eigen::Vector3d &velocity, const vpVlpRig &rig, Eigen::Vector2d &pixel,
+                           Eigen::Vector2d &motion)
+{
+  static const double moment = 1e-3; // s
+  const vpHomogeneousMatrix later =
+      wMb * vpHomogeneousMatrix(vpTranslationVector(velocity.x() * moment, velocity.y() * moment, 0),
+                                vpRotationMatrix(vpRzyxVector(velocity.z() * moment, 0, 0)));
+  if (!pixelOf(place, (wMb * rig.bMc).inverse(), rig, pixel) ||
+      !pixelOf(place, (later * rig.bMc).inverse(), rig, motion)) {
+    return false;
+  }
+  motion = (motion - pixel) / moment;
+  return true;
+}
+
 Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMatrix &wMb,
                                       const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime)
 {
   const double half = 0.5 * (std::isfinite(lamp.size) ? lamp.size : 1);
   const vpHomogeneousMatrix cMw = (wMb * rig.bMc).inverse();
-  static const int points = 24;
+  static const std::array<Eigen::Vector3d, rimPoints> circle = unitCircle();
   const bool disk = lamp.shape == vpLamp::Shape::disk;
   Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9), p;
-  for (int k = 0; k < (disk ? points : 4); ++k) {
-    const double angle = disk ? 2 * M_PI * k / points : lamp.yaw + M_PI * (2 * k + 1) / 4;
-    const double reach = disk ? half : std::sqrt(2) * half;
-    const Eigen::Vector3d rim = lamp.position + reach * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
-    if (!pixelOf(rim, cMw, rig, p)) {
+  for (size_t k = 0; k < (disk ? rimPoints : 4); ++k) {
+    const double angle = lamp.yaw + M_PI * static_cast<double>(2 * k + 1) / 4; // of a corner
+    const Eigen::Vector3d rim =
+        disk ? half * circle[k]
+             : std::sqrt(2) * half * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+    if (!pixelOf(lamp.position + rim, cMw, rig, p)) {
       return Eigen::Vector2d::Zero();
     }
     least = least.cwiseMin(p);
@@ -61,18 +91,12 @@ Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMat
   }
   Eigen::Vector2d extent = most - least;
   if (disk) {
-    extent /= std::cos(0.5 * M_PI / points); // a polygon's falls short of its circle's
+    extent /= std::cos(0.5 * M_PI / rimPoints); // a polygon's falls short of its circle's
   }
-  static const double moment = 1e-3; // s
-  const vpHomogeneousMatrix later =
-      wMb * vpHomogeneousMatrix(vpTranslationVector(velocity.x() * moment, velocity.y() * moment, 0),
-                                vpRotationMatrix(vpRzyxVector(velocity.z() * moment, 0, 0)));
-  Eigen::Vector2d middle;
-  if (pixelOf(lamp.position, cMw, rig, middle) &&
-      pixelOf(lamp.position, (later * rig.bMc).inverse(), rig, p)) {
+  Eigen::Vector2d middle, motion;
+  if (motionOf(lamp.position, wMb, velocity, rig, middle, motion)) {
     const int along = rig.shutter.alongColumns() ? 0 : 1;
-    const double ahead = (p(along) - middle(along)) / moment * lineTime; // px of its way from line to line
-    extent(along) /= std::max(0.1, 1 - ahead);
+    extent(along) /= std::max(0.1, 1 - motion(along) * lineTime);
   }
   return extent;
 }

@@ -57,6 +57,11 @@ public:
   static Eigen::Vector2d extentOf(const vpLamp &lamp, const vpHomogeneousMatrix &wMb,
                                   const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime);
 
+  //! Pixel of a place (m, in w) and its velocity, px/s. False where it is not in front of the camera.
+  static bool motionOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &wMb,
+                       const Eigen::Vector3d &velocity, const vpVlpRig &rig, Eigen::Vector2d &pixel,
+                       Eigen::Vector2d &motion);
+
   //! Pixel of a place (m, in w). False where it is not in front of the camera.
   static bool pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &cMw, const vpVlpRig &rig,
                       Eigen::Vector2d &pixel);

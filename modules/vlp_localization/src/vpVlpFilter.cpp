@@ -21,6 +21,18 @@ double square(double x)
   return x * x;
 }
 
+//! A B for few columns, each by itself.
+template <int Columns>
+Eigen::Matrix<double, Eigen::Dynamic, Columns>
+timesColumns(const Eigen::MatrixXd &A, const Eigen::Matrix<double, Eigen::Dynamic, Columns> &B)
+{
+  Eigen::Matrix<double, Eigen::Dynamic, Columns> product(A.rows(), Columns);
+  for (int k = 0; k < Columns; ++k) {
+    product.col(k).noalias() = A * B.col(k);
+  }
+  return product;
+}
+
 //! Where the base stands that leans by roll and pitch and heads along yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
 vpBasePose poseOf(const Eigen::VectorXd &state)
 {
@@ -51,7 +63,7 @@ struct vpVlpFilter::Predicted {
   bool inFront = false;
   double depth = 0;
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
-  Matrix H;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> Ht; // transposed
   Eigen::Matrix2d ownDoubt = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
 };
 
@@ -204,19 +216,19 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
   const Eigen::Vector3d camera = pose.wtb + pose.wRb * frame.btc;
   predicted.depth = (pose.wRb * frame.bRc).col(2).dot(place - camera);
   predicted.ray = (1 + m_x(lens + 2)) * ray.ray + m_x.segment<2>(lens);
-  predicted.H = Matrix::Zero(2, m_x.size());
+  predicted.Ht.setZero(m_x.size(), 2);
   const Eigen::Matrix<double, 2, 3> byPlace = ray.derivative.leftCols<3>(),
                                     byTurn = ray.derivative.rightCols<3>();
-  predicted.H.block<2, 3>(0, x) = byPlace;
-  predicted.H.block<2, 3>(0, yaw) = byTurn * rotationByAngles(m_x);
-  predicted.H.block<2, 3>(0, mount) = byPlace * pose.wRb;
-  predicted.H.block<2, 2>(0, lens).setIdentity();
-  predicted.H.col(lens + 2) = ray.ray;
+  predicted.Ht.middleRows<3>(x) = byPlace.transpose();
+  predicted.Ht.middleRows<3>(yaw) = (byTurn * rotationByAngles(m_x)).transpose();
+  predicted.Ht.middleRows<3>(mount) = (byPlace * pose.wRb).transpose();
+  predicted.Ht.middleRows<2>(lens).setIdentity();
+  predicted.Ht.row(lens + 2) = ray.ray.transpose();
   // The camera turns about z of b and stays where it is.
   const Eigen::Vector3d axis = pose.wRb.col(2);
-  predicted.H.col(mount + 3) = byTurn * axis - byPlace * axis.cross(pose.wRb * frame.btc);
+  predicted.Ht.row(mount + 3) = (byTurn * axis - byPlace * axis.cross(pose.wRb * frame.btc)).transpose();
   if (own >= 0) {
-    predicted.H.block<2, 3>(0, own) = -byPlace;
+    predicted.Ht.middleRows<3>(own) = -byPlace.transpose();
   } else {
     predicted.ownDoubt = square(placeSigma(lamp)) * byPlace * byPlace.transpose();
   }
@@ -233,8 +245,8 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
   innovation.inFront = predicted.inFront;
   if (predicted.inFront) {
     innovation.ray = lamp.ray - predicted.ray;
-    innovation.covariance =
-        predicted.H * m_P * predicted.H.transpose() + predicted.ownDoubt + m_noise * lamp.covariance;
+    innovation.covariance = predicted.Ht.transpose() * timesColumns(m_P, predicted.Ht) + predicted.ownDoubt +
+                            m_noise * lamp.covariance;
     innovation.depth = predicted.depth;
   }
   return innovation;
@@ -251,7 +263,7 @@ void vpVlpFilter::update(const vpLampSight &lamp)
   weighNoise(lamp);
   const Predicted predicted = predict(lamp);
   if (predicted.inFront) {
-    measure(predicted.H, lamp.ray - predicted.ray, m_noise * lamp.covariance);
+    measure<2>(predicted.Ht, lamp.ray - predicted.ray, m_noise * lamp.covariance);
   }
 }
 
@@ -274,11 +286,16 @@ void vpVlpFilter::weighNoise(const vpLampSight &lamp)
   m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
 }
 
-void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matrix &R)
+template <int Rows>
+void vpVlpFilter::measure(const Eigen::Matrix<double, Eigen::Dynamic, Rows> &Ht,
+                          const Eigen::Matrix<double, Rows, 1> &innovation,
+                          const Eigen::Matrix<double, Rows, Rows> &R)
 {
-  const Matrix PH = m_P * H.transpose();
-  const Matrix S = H * PH + R;
-  Matrix K = S.ldlt().solve(PH.transpose()).transpose();
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, Rows>;
+  const Columns PH = timesColumns(m_P, Ht);
+  const Eigen::Matrix<double, Rows, Rows> S = Ht.transpose() * PH + R;
+  const Eigen::Matrix<double, Rows, Rows> inverse = S.inverse();
+  Columns K = PH.lazyProduct(inverse);
   // Errors of mount, lens and map are considered, not estimated: a hundredth of a pixel, seen again and again
   // about ever other linearisations, would seem to tell them.
   K.middleRows(mount, mark0 - mount).setZero();
@@ -287,20 +304,32 @@ void vpVlpFilter::measure(const Matrix &H, const Vector &innovation, const Matri
   m_x += correction;
   m_x(yaw) = std::remainder(m_x(yaw), 2 * M_PI);
   // Joseph's form, which holds for any gain, multiplied out: H has few rows.
-  const Matrix KPH = K * PH.transpose();
-  m_P += K * S * K.transpose() - KPH - KPH.transpose();
+  const Columns KS = K.lazyProduct(S);
+  m_P += (KS - PH).lazyProduct(K.transpose());
+  m_P -= K.lazyProduct(PH.transpose());
   // A turn about the lamp, which its ray does not tell, is to stay untold once the place was corrected, else
   // corrections alone would tell the heading. So the covariance is that of the right-invariant error (Barrau
   // and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.
   for (const int first : {x, mark0}) {
     const Eigen::Vector2d turned(-correction(first + 1), correction(first));
-    const Eigen::RowVectorXd row = m_P.row(first + yaw);
-    m_P.middleRows<2>(first) += turned * row;
-    const Vector column = m_P.col(first + yaw);
-    m_P.middleCols<2>(first) += column * turned.transpose();
+    for (int k = 0; k < 2; ++k) {
+      m_P.row(first + k) += turned(k) * m_P.row(first + yaw);
+    }
+    for (int k = 0; k < 2; ++k) {
+      m_P.col(first + k) += turned(k) * m_P.col(first + yaw);
+    }
   }
-  m_P = 0.5 * (m_P + m_P.transpose()).eval();
+  for (Eigen::Index k = 0; k < m_P.cols(); ++k) {
+    for (Eigen::Index l = 0; l < k; ++l) {
+      m_P(l, k) = m_P(k, l) = 0.5 * (m_P(l, k) + m_P(k, l));
+    }
+  }
 }
+
+template void vpVlpFilter::measure<2>(const Eigen::Matrix<double, Eigen::Dynamic, 2> &,
+                                      const Eigen::Vector2d &, const Eigen::Matrix2d &);
+template void vpVlpFilter::measure<3>(const Eigen::Matrix<double, Eigen::Dynamic, 3> &,
+                                      const Eigen::Vector3d &, const Eigen::Matrix3d &);
 
 //! Of the pose in the state from there on.
 vpVlpFix vpVlpFilter::fixOf(Index first) const
@@ -314,10 +343,12 @@ vpVlpFix vpVlpFilter::fixOf(Index first) const
   const Vector state = m_x.segment<6>(first);
   fix.wMb = poseOf(state).wMb();
   fix.wMc = fix.wMb * m_rig.bMc;
-  Matrix byState = Matrix::Zero(6, 6);
-  byState.topLeftCorner<3, 3>().setIdentity();
-  byState.bottomRightCorner<3, 3>() = rotationByAngles(state);
-  fix.covariance = byState * m_P.block<6, 6>(first, first) * byState.transpose();
+  const Eigen::Matrix3d byAngles = rotationByAngles(state);
+  const auto P = m_P.block<6, 6>(first, first);
+  fix.covariance.topLeftCorner<3, 3>() = P.topLeftCorner<3, 3>();
+  fix.covariance.topRightCorner<3, 3>() = P.topRightCorner<3, 3>() * byAngles.transpose();
+  fix.covariance.bottomLeftCorner<3, 3>() = byAngles * P.bottomLeftCorner<3, 3>();
+  fix.covariance.bottomRightCorner<3, 3>() = byAngles * P.bottomRightCorner<3, 3>() * byAngles.transpose();
   return fix;
 }
 

@@ -105,27 +105,27 @@ void vpVlpFilter::followOdometry(const vpOdometry &before, const vpOdometry &sam
   for (int i : {vx, vy, w}) {
     m_P(i, i) += square(i == w ? anyTurn : anySpeed);
   }
-  const Eigen::Index n = m_x.size();
-  Matrix H = Matrix::Zero(3, n);
-  H(0, vx) = 1 + m_x(speedScale);
-  H(0, speedScale) = m_x(vx);
-  H(1, vy) = 1;
-  H(2, w) = 1 + m_x(turnScale);
-  H(2, turnScale) = m_x(w);
-  H(2, turnBias) = 1;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> Ht;
+  Ht.setZero(m_x.size(), 3);
+  Ht(vx, 0) = 1 + m_x(speedScale);
+  Ht(speedScale, 0) = m_x(vx);
+  Ht(vy, 1) = 1;
+  Ht(w, 2) = 1 + m_x(turnScale);
+  Ht(turnScale, 2) = m_x(w);
+  Ht(turnBias, 2) = 1;
   // An error that changes from sample to sample averages out over samples, however long they are.
   static const double usual = 0.02; // s
   const double dt = sample.timestamp - before.timestamp;
   const double share = odometryShare * std::sqrt(usual / std::max(dt, 1e-3));
   // Where speeds change from sample to sample they do so within one.
   static const double within = 0.3; // share of the change, standard deviation
-  Matrix R = Matrix::Zero(3, 3);
+  Eigen::Matrix3d R = Eigen::Matrix3d::Zero();
   R(0, 0) = square(odometrySpeed) + square(share * sample.v) + square(within * (sample.v - before.v));
   R(1, 1) = square(sidewaysSpeed);
   R(2, 2) = square(odometryTurnRate) + square(share * sample.w) + square(within * (sample.w - before.w));
   const Eigen::Vector3d innovation(sample.v - (1 + m_x(speedScale)) * m_x(vx), -m_x(vy),
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
-  measure(H, innovation, R);
+  measure<3>(Ht, innovation, R);
 }
 
 void vpVlpFilter::advance(double time)

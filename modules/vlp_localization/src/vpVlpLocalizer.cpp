@@ -110,7 +110,7 @@ const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &fra
   return tracker.detector.observations();
 }
 
-//! Where the picture shows the map's lamps, by the pose that the filter expects.
+//! Where the picture shows the map's lamps while their lines are read, by the motion that the filter expects.
 std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
 {
   std::vector<vpRect> windows;
@@ -128,19 +128,21 @@ std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
     if (!(height > 0 && apart < farthest * height && turn + place / height < doubtful)) {
       continue;
     }
-    Eigen::Vector2d middle;
+    Eigen::Vector2d middle, motion;
     const Eigen::Vector2d extent = vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
-    if (!vpLampTrust::pixelOf(lamp.position, fix.wMc.inverse(), m_rig, middle)) {
+    if (!vpLampTrust::motionOf(lamp.position, fix.wMb, filter.velocity(), m_rig, middle, motion)) {
       continue;
     }
+    const int along = m_rig.shutter.alongColumns() ? 0 : 1;
+    const double lines = middle(along) - 0.5 * ((along == 0 ? m_rig.width : m_rig.height) - 1.0);
+    middle += motion * m_lineTime * lines / std::max(0.1, 1 - motion(along) * m_lineTime);
     static const double sigmas = 3, around = 0.7; // of the extent, on each side
     const double doubt = sigmas * m_rig.camera.get_px() * (place + turn * apart) / height;
     const Eigen::Vector2d half =
         (std::isfinite(lamp.size) ? 0.5 + around : 0.2) * extent + Eigen::Vector2d(doubt, doubt);
-    const Eigen::Vector2d least = (middle - half).cwiseMax(0.0),
-                          most = (middle + half).cwiseMin(Eigen::Vector2d(m_rig.width - 1, m_rig.height - 1));
-    if ((least.array() < most.array()).all()) {
-      windows.emplace_back(least.x(), least.y(), most.x() - least.x(), most.y() - least.y());
+    const Eigen::Vector2d least = middle - half, most = middle + half;
+    if (most.minCoeff() > 0 && least.x() < m_rig.width - 1 && least.y() < m_rig.height - 1) {
+      windows.emplace_back(least.x(), least.y(), 2 * half.x(), 2 * half.y());
     }
   }
   return windows;

@@ -194,6 +194,8 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::meanShift(const vpIm
   // Under a kernel that falls off, the mean of a target aside of the middle comes out nearer to it than the
   // target is, by about a third: steps are that much longer.
   static const double stride = 1.5;
+  static const double finest = 0.2; // px
+  const double still = std::max(finest, convergence * std::sqrt(start.getWidth() * start.getHeight()));
   Impl &own = *m_impl;
   const auto binOf = binsOf(I);
   const double offsetU = own.offsetU * start.getWidth();
@@ -204,7 +206,7 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::meanShift(const vpIm
     candidate.moments = own.sums.moments(I, binOf, own.model.weights(), search, 1 / (1 + 2 * searchMargin));
     const double du = stride * candidate.moments.meanU, dv = stride * candidate.moments.meanV;
     search = moved(search, du, dv);
-    if (std::hypot(du, dv) < convergence) {
+    if (std::hypot(du, dv) < still) {
       break;
     }
   }
@@ -369,6 +371,18 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::setRight(const vpImage<unsign
     m_impl->predicted = true;
   }
   return sighting;
+}
+
+//! As good a measurement as there is; the model is not learned from it.
+std::optional<vpTargetTracker::Sighting> vpCamshiftKalmanTracker::seenAt(const vpRect &window)
+{
+  predictWindow();
+  m_impl->predicted = true;
+  correctBy(window.getCenter(), noiseFloor);
+  m_impl->width = window.getWidth();
+  m_impl->height = window.getHeight();
+  m_impl->missed = 0;
+  return Sighting{window, similarity(), true};
 }
 
 vpTargetTracker::Sighting vpCamshiftKalmanTracker::follow(const vpImage<unsigned char> &I)

@@ -25,6 +25,7 @@ struct vpLampTracker::Track {
   bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
   std::vector<unsigned char> look;        // pixels of the place, line by line
   std::optional<vpLampObservation> known; // as it was seen last, where a glance may find it again
+  std::optional<vpLampObservation> found; // by a glance, where it was expected
 
   void learn(const vpLampObservation &seen, unsigned int sure, double minConfidence);
   void remember(const vpImage<unsigned char> &I);

@@ -137,20 +137,46 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   return m_observations;
 }
 
+//! Whether the lamp has its middle about there, and is as it was.
+bool vpLampTracker::glanceAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place)
+{
+  if (!track.known) {
+    return false;
+  }
+  vpLampObservation lamp = *track.known;
+  lamp.outline.centre = {place.get_u(), place.get_v()};
+  if (detector.glance(I, lamp)) {
+    track.found = std::move(lamp);
+  }
+  return track.found.has_value();
+}
+
+//! The same in the middle of the nearest window in which a lamp is expected.
+bool vpLampTracker::glanceAsExpected(Track &track, const vpImage<unsigned char> &I,
+                                     const std::vector<vpRect> &expected)
+{
+  static const double farthest = 1; // of the lamp's extent, since the frame before
+  const vpImagePoint before = track.place.getCenter();
+  auto way = [&before](const vpRect &window) { return vpImagePoint::distance(window.getCenter(), before); };
+  const auto nearest = std::min_element(expected.begin(), expected.end(), [&way](const auto &a, const auto &b) {
+    return way(a) < way(b);
+  });
+  return nearest != expected.end() &&
+         way(*nearest) < farthest * std::max(track.place.getWidth(), track.place.getHeight()) &&
+         glanceAt(track, I, nearest->getCenter());
+}
+
 //! The lamps that are where their targets are, and as they were.
 void vpLampTracker::glance(const vpImage<unsigned char> &I)
 {
   for (size_t t = 0; t < m_tracks.size(); ++t) {
     Track &track = m_tracks[t];
-    if (!track.known || track.astray) {
+    if (track.astray) {
       continue;
     }
-    vpLampObservation lamp = *track.known;
-    const vpImagePoint now = track.target->center();
-    lamp.outline.centre = {now.get_u(), now.get_v()};
-    if (detector.glance(I, lamp)) {
+    if (track.found || glanceAt(track, I, track.target->center())) {
       track.taken = true;
-      m_observations.push_back(std::move(lamp));
+      m_observations.push_back(*track.found);
       m_trackOf.push_back(static_cast<int>(t));
     }
   }
@@ -230,10 +256,15 @@ std::vector<vpRect> vpLampTracker::windows(const vpVlpFrame &frame, const std::v
   std::vector<vpRect> all;
   for (Track &track : m_tracks) {
     track.taken = false;
+    track.found.reset();
     if (track.astray) {
       track.window = track.place;
     } else {
-      track.target->track(frame.I);
+      const bool there = m_inSight >= needed && glanceAsExpected(track, frame.I, expected) &&
+                         track.target->goOn(boxOf(track.found->outline));
+      if (!there) {
+        track.target->track(frame.I);
+      }
       track.window = track.target->window();
     }
     all.push_back(widened(track.window, margin));

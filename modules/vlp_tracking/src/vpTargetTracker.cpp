@@ -98,12 +98,17 @@ void vpTargetTracker::initTracking(const vpImage<vpRGBa> &I, const vpRect &windo
   beginChecked(I, window);
 }
 
-template <class Pixel>
-void vpTargetTracker::checkTracked(const vpImage<Pixel> &I) const
+void vpTargetTracker::checkBegun() const
 {
   if (m_width == 0) {
     throw vpException(vpException::notInitialized, "track: no target yet, expected initTracking() before");
   }
+}
+
+template <class Pixel>
+void vpTargetTracker::checkTracked(const vpImage<Pixel> &I) const
+{
+  checkBegun();
   if (I.getWidth() != m_width || I.getHeight() != m_height) {
     throw vpException(vpException::dimensionError, "track: the picture is " + sizeOf(I) + ", expected " +
                                                        std::to_string(m_width) + " x " +
@@ -129,6 +134,17 @@ bool vpTargetTracker::track(const vpImage<unsigned char> &I)
 bool vpTargetTracker::track(const vpImage<vpRGBa> &I)
 {
   return followChecked(I);
+}
+
+bool vpTargetTracker::goOn(const vpRect &window)
+{
+  checkBegun();
+  const std::optional<Sighting> sighting = seenAt(window);
+  if (sighting) {
+    m_estimate = sighting->window;
+    m_similarity = sighting->similarity;
+  }
+  return sighting.has_value();
 }
 
 void vpTargetTracker::correct(const vpImage<unsigned char> &I, const vpRect &window)

@@ -196,7 +196,13 @@ private:
   void addLamp(const vpLampSight &lamp);
   void weighNoise(const vpLampSight &lamp);
   vpVlpFix fixOf(Index first) const;
-  void measure(const Matrix &H, const Vector &innovation, const Matrix &R);
+  /*!
+    \param Ht n x Rows, transpose of the innovation's derivative by the state of n. \param R Rows x Rows,
+    covariance of what was measured.
+  */
+  template <int Rows>
+  void measure(const Eigen::Matrix<double, Eigen::Dynamic, Rows> &Ht,
+               const Eigen::Matrix<double, Rows, 1> &innovation, const Eigen::Matrix<double, Rows, Rows> &R);
   void move(double dt, bool accelerates);
   void wander(double time);
   void followOdometry(const vpOdometry &before, const vpOdometry &sample);

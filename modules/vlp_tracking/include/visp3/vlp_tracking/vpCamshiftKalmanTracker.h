@@ -6,6 +6,7 @@
 #define vpCamshiftKalmanTracker_h
 
 #include <memory>
+#include <optional>
 
 #include <visp3/vlp_tracking/vpTargetTracker.h>
 
@@ -44,7 +45,7 @@ class VISP_EXPORT vpCamshiftKalmanTracker : public vpTargetTracker
 {
 public:
   double searchMargin = 0.15;   // on each side of the window, as a share of it, for mean shift
-  double convergence = 0.2;     // px, the move at which mean shift rests
+  double convergence = 0.004;   // share of the window, the move at which mean shift rests; 0.2 px at least
   int maxIterations = 15;       // of mean shift
   double threshold = 0.6;       // Bhattacharyya coefficient below which the target is not seen
   double regainThreshold = 0.7; // the same for what is found elsewhere, or after the target was not seen
@@ -79,6 +80,7 @@ protected:
   Sighting begin(const vpImage<unsigned char> &I, const vpRect &window) override;
   Sighting begin(const vpImage<vpRGBa> &I, const vpRect &window) override;
   Sighting setRight(const vpImage<unsigned char> &I, const vpRect &window) override;
+  std::optional<Sighting> seenAt(const vpRect &window) override;
   Sighting follow(const vpImage<unsigned char> &I) override;
   Sighting follow(const vpImage<vpRGBa> &I) override;
 

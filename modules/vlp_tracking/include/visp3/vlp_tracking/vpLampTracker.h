@@ -21,8 +21,9 @@ BEGIN_VISP_NAMESPACE
   together tells which lamp it is.
 
   A lamp that `sure` frames agree on is looked for by a glance (vpLedDetector::glance()), which takes what it
-  finds for that lamp only where it is as before in every respect; what a glance does not find is looked at
-  with care, and so are windows that show any other light.
+  finds for that lamp only where it is as before in every respect: first where the robot's motion says, and
+  where it is there its target tracker need not look; else where the target tracker has it. What no glance
+  finds is looked at with care, and so are windows that show any other light.
 
   New lamps are born of a search that covers a strip of each frame, so that its cost is bounded; of the whole
   frame only where fewer lamps than `needed` are in sight. One that is not seen for `patience` dies, and so
@@ -82,6 +83,8 @@ private:
 
   std::vector<vpRect> windows(const vpVlpFrame &frame, const std::vector<vpRect> &expected);
   vpRect strip();
+  bool glanceAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place);
+  bool glanceAsExpected(Track &track, const vpImage<unsigned char> &I, const std::vector<vpRect> &expected);
   void glance(const vpImage<unsigned char> &I);
   void search(const vpImage<unsigned char> &I);
   void assign();

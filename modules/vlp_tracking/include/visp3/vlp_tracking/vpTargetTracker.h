@@ -6,6 +6,7 @@
 #define vpTargetTracker_h
 
 #include <memory>
+#include <optional>
 
 #include <visp3/core/vpColor.h>
 #include <visp3/core/vpImage.h>
@@ -60,6 +61,13 @@ public:
   */
   void correct(const vpImage<unsigned char> &I, const vpRect &window);
 
+  /*!
+    Goes on to the next picture without a look at it: something else saw that the target fills \e window
+    there. False where the method does not know how to; then the picture is for track().
+    \throw vpException notInitialized: before initTracking().
+  */
+  bool goOn(const vpRect &window);
+
   //! The part inside the picture of the estimated window; predicted where the target was not seen. Its width
   //! and height are 0 where nothing of it is inside.
   vpRect window() const;
@@ -92,10 +100,12 @@ protected:
   {
     return begin(I, window);
   }
+  virtual std::optional<Sighting> seenAt(const vpRect &) { return std::nullopt; }
   virtual Sighting follow(const vpImage<unsigned char> &I) = 0;
   virtual Sighting follow(const vpImage<vpRGBa> &I);
 
 private:
+  void checkBegun() const;
   template <class Pixel>
   void checkTracked(const vpImage<Pixel> &I) const;
   template <class Pixel>
