@@ -171,7 +171,7 @@ void vpEdgeFit<Model>::addEnds(int from, int to)
 template <>
 void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to)
 {
-  vpEllipseEdges(*m_lines, *m_v, *m_u, m_model, m_blur, m_reach)
+  vpEllipseEdges(*m_lines, *m_v, *m_u, m_aligned, m_model, m_blur, m_reach)
       .find(vpEllipseEdges::linesOf(*m_lines, from, to, m_model, m_every, m_litOnly), m_ends, m_along);
 }
 
@@ -194,21 +194,23 @@ void vpEdgeFit<Model>::findEnds()
 template <class Model>
 void vpEdgeFit<Model>::assemble(Equations &equations)
 {
-  m_variances.clear();
-  m_sorted.clear();
-  for (const End &end : m_ends) {
-    m_variances.push_back(end.squares / std::max(1, end.pixels - 2));
+  const size_t ends = m_ends.size();
+  m_offsets.resize(ends);
+  m_sorted.resize(ends);
+  for (size_t i = 0; i < ends; ++i) {
+    const End &end = m_ends[i];
+    m_offsets[i] = end.offset();
     // What the end's own best shift leaves: from a start a pixel off, all ends misfit, and none is dark for
     // it.
-    const double left = end.squares - end.offset() * end.shift;
-    m_sorted.push_back(std::max(0.0, left) / std::max(1, end.pixels - 3));
+    const double left = end.squares - m_offsets[i] * end.shift;
+    m_sorted[i] = std::max(0.0, left) / std::max(1, end.pixels - 3);
   }
   const double noise = std::max(median(m_sorted), 0.05); // 8 bits round: 1/12, less where all is dark
   auto shines = [noise](const End &end) { return end.amplitude > 0 && end.shiftShift > 4 * noise; };
   m_sorted.clear();
-  for (const End &end : m_ends) {
-    if (shines(end)) {
-      m_sorted.push_back(std::abs(end.offset()));
+  for (size_t i = 0; i < ends; ++i) {
+    if (shines(m_ends[i])) {
+      m_sorted.push_back(std::abs(m_offsets[i]));
     }
   }
   const double scale = 1.4826 * std::max(median(m_sorted), 0.02);
@@ -225,8 +227,9 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
     chiSquare += end.squares;
     pixels += end.pixels;
     // An end is no outlier for being noisy: its own doubt widens the limit.
-    const double variance = std::max(m_variances[i], noise), own = std::sqrt(variance / end.shiftShift);
-    const double z = end.offset() / (4.685 * std::max(scale, own));
+    const double variance = std::max(end.squares / std::max(1, end.pixels - 2), noise),
+                 own = std::sqrt(variance / end.shiftShift);
+    const double z = m_offsets[i] / (4.685 * std::max(scale, own));
     if (std::abs(z) >= 1) {
       continue;
     }
@@ -247,7 +250,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
       crossing.H(N - 1, N - 1) += weight * end.blurBlur;
       crossing.g(N - 1) += weight * end.blur;
     }
-    squares += weight * end.shift * end.offset();
+    squares += weight * end.shift * m_offsets[i];
     weights += weight * end.shiftShift;
     members += tukey;
   }

@@ -78,7 +78,8 @@ public:
 
   vpEdgeFit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
             const std::vector<double> &samplePositions, const Model &start)
-      : m_lines(&lines), m_v(&linePositions), m_u(&samplePositions), m_model(start)
+      : m_lines(&lines), m_v(&linePositions), m_u(&samplePositions), m_aligned(aligned(samplePositions)),
+        m_model(start)
   {
   }
 
@@ -106,6 +107,16 @@ public:
   double prior() const { return m_prior; }
 
 private:
+  //! Whether each sample lies where its number says.
+  static bool aligned(const std::vector<double> &positions)
+  {
+    for (size_t i = 0; i < positions.size(); ++i) {
+      if (positions[i] != static_cast<double>(i)) {
+        return false;
+      }
+    }
+    return true;
+  }
   void addCrossing(int line, const vpLineStretch &pixels, double crossing);
   void addAlong(int line, const vpLineStretch &pixels);
   void addEnds(int from, int to);
@@ -115,6 +126,7 @@ private:
   const cv::Mat_<unsigned char> *m_lines;
   const std::vector<double> *m_v;
   const std::vector<double> *m_u;
+  bool m_aligned; // of the samples
   Model m_model;
   double m_blur = 1.5;
   double m_reach = 0;     // px on either side of the edge
@@ -133,7 +145,7 @@ private:
   std::vector<End> m_ends;
   std::vector<Equations> m_along; // of ends that run along their line
   std::vector<int> m_touched;     // lines
-  std::vector<double> m_variances, m_sorted;
+  std::vector<double> m_offsets, m_sorted;
 };
 
 template <>

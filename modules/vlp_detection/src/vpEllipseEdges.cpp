@@ -232,6 +232,7 @@ std::vector<int> vpEllipseEdges::linesOf(const cv::Mat_<unsigned char> &lines, i
                                          const vpEllipseModel &model, int every, bool litOnly)
 {
   std::vector<int> some;
+  some.reserve(static_cast<size_t>(std::max(0, to - from + 1)));
   for (int block = from; block <= to; block += lanes * every) {
     for (int line = block; line <= std::min(to, block + lanes - 1); ++line) {
       some.push_back(line);
@@ -244,6 +245,7 @@ std::vector<int> vpEllipseEdges::linesOf(const cv::Mat_<unsigned char> &lines, i
   static const int apart = 5; // samples
   const int middle = std::clamp(static_cast<int>(model.centre().x()), 2 * apart, lines.cols - 1 - 2 * apart);
   std::vector<int> light;
+  light.reserve(some.size());
   for (int line : some) {
     const unsigned char *row = lines[line] + middle;
     light.push_back(row[-2 * apart] + row[-apart] + row[0] + row[apart] + row[2 * apart]);

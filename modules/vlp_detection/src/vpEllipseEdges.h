@@ -21,10 +21,12 @@ public:
   using End = vpLineEnd<vpEllipseModel::parameters + 1>;
   using Equations = vpNormalEquations<vpEllipseModel::parameters + 1>;
 
-  //! \param v, u Positions of the lines and of the samples, px. \param reach px on either side of the edge.
+  //! \param v, u Positions of the lines and of the samples, px. \param aligned Each sample lies where its
+  //! number says. \param reach px on either side of the edge.
   vpEllipseEdges(const cv::Mat_<unsigned char> &lines, const std::vector<double> &v,
-                 const std::vector<double> &u, const vpEllipseModel &model, double blur, double reach)
-      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_reach(reach), m_aligned(aligned(u))
+                 const std::vector<double> &u, bool aligned, const vpEllipseModel &model, double blur,
+                 double reach)
+      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_reach(reach), m_aligned(aligned)
   {
   }
 
@@ -40,17 +42,6 @@ public:
   void find(const std::vector<int> &lines, std::vector<End> &ends, std::vector<Equations> &along) const;
 
 private:
-  //! Whether each sample lies where its number says.
-  static bool aligned(const std::vector<double> &u)
-  {
-    for (size_t i = 0; i < u.size(); ++i) {
-      if (u[i] != static_cast<double>(i)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
   const cv::Mat_<unsigned char> &m_lines;
   const std::vector<double> &m_v, &m_u;
   const vpEllipseModel &m_model;

@@ -10,8 +10,6 @@
 
 #include <Eigen/LU>
 #include <visp3/core/vpMeterPixelConversion.h>
-#include <visp3/core/vpRotationMatrix.h>
-#include <visp3/core/vpRzyxVector.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -27,6 +25,29 @@ Eigen::Vector2d seenExtent(const vpLampOutline &outline)
   return {box(2) - box(0), box(3) - box(1)};
 }
 
+//! A place (m) given in frame w, in frame a.
+Eigen::Vector3d inFrame(const vpHomogeneousMatrix &wMa, const Eigen::Vector3d &place)
+{
+  Eigen::Vector3d a = Eigen::Vector3d::Zero();
+  for (unsigned int i = 0; i < 3; ++i) {
+    for (unsigned int k = 0; k < 3; ++k) {
+      a(i) += wMa[k][i] * (place(k) - wMa[k][3]);
+    }
+  }
+  return a;
+}
+
+//! Pixel of a place (m, in b). False where it is not in front of the camera.
+bool pixelOf(const Eigen::Vector3d &place, const vpVlpRig &rig, Eigen::Vector2d &pixel)
+{
+  const Eigen::Vector3d c = inFrame(rig.bMc, place);
+  if (!(c.z() > 1e-3)) {
+    return false;
+  }
+  vpMeterPixelConversion::convertPoint(rig.camera, c.x() / c.z(), c.y() / c.z(), pixel.x(), pixel.y());
+  return true;
+}
+
 constexpr size_t rimPoints = 24;
 
 std::array<Eigen::Vector3d, rimPoints> unitCircle()
@@ -40,30 +61,15 @@ std::array<Eigen::Vector3d, rimPoints> unitCircle()
 }
 } // namespace
 
-bool vpLampTrust::pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &cMw, const vpVlpRig &rig,
-                          Eigen::Vector2d &pixel)
-{
-  Eigen::Vector3d c;
-  for (unsigned int i = 0; i < 3; ++i) {
-    c(i) = cMw[i][0] * place.x() + cMw[i][1] * place.y() + cMw[i][2] * place.z() + cMw[i][3];
-  }
-  if (!(c.z() > 1e-3)) {
-    return false;
-  }
-  vpMeterPixelConversion::convertPoint(rig.camera, c.x() / c.z(), c.y() / c.z(), pixel.x(), pixel.y());
-  return true;
-}
-
 bool vpLampTrust::motionOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &wMb,
                            const Eigen::Vector3d &velocity, const vpVlpRig &rig, Eigen::Vector2d &pixel,
                            Eigen::Vector2d &motion)
 {
+  const Eigen::Vector3d b = inFrame(wMb, place);
+  // From b, whatever stands still in w moves the other way.
+  const Eigen::Vector3d moves(velocity.z() * b.y() - velocity.x(), -velocity.z() * b.x() - velocity.y(), 0);
   static const double moment = 1e-3; // s
-  const vpHomogeneousMatrix later =
-      wMb * vpHomogeneousMatrix(vpTranslationVector(velocity.x() * moment, velocity.y() * moment, 0),
-                                vpRotationMatrix(vpRzyxVector(velocity.z() * moment, 0, 0)));
-  if (!pixelOf(place, (wMb * rig.bMc).inverse(), rig, pixel) ||
-      !pixelOf(place, (later * rig.bMc).inverse(), rig, motion)) {
+  if (!pixelOf(b, rig, pixel) || !pixelOf(b + moment * moves, rig, motion)) {
     return false;
   }
   motion = (motion - pixel) / moment;
@@ -74,7 +80,6 @@ Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMat
                                       const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime)
 {
   const double half = 0.5 * (std::isfinite(lamp.size) ? lamp.size : 1);
-  const vpHomogeneousMatrix cMw = (wMb * rig.bMc).inverse();
   static const std::array<Eigen::Vector3d, rimPoints> circle = unitCircle();
   const bool disk = lamp.shape == vpLamp::Shape::disk;
   Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9), p;
@@ -83,7 +88,7 @@ Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMat
     const Eigen::Vector3d rim =
         disk ? half * circle[k]
              : std::sqrt(2) * half * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
-    if (!pixelOf(lamp.position + rim, cMw, rig, p)) {
+    if (!pixelOf(inFrame(wMb, lamp.position + rim), rig, p)) {
       return Eigen::Vector2d::Zero();
     }
     least = least.cwiseMin(p);

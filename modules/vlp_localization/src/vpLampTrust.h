@@ -62,10 +62,6 @@ public:
                        const Eigen::Vector3d &velocity, const vpVlpRig &rig, Eigen::Vector2d &pixel,
                        Eigen::Vector2d &motion);
 
-  //! Pixel of a place (m, in w). False where it is not in front of the camera.
-  static bool pixelOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &cMw, const vpVlpRig &rig,
-                      Eigen::Vector2d &pixel);
-
 private:
   struct Past {
     int frames = 0;
