@@ -15,6 +15,7 @@
 
 #include "vpBrighter.h"
 #include "vpLampGlance.h"
+#include "vpSteadyLight.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -331,12 +332,16 @@ bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRo
 vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
 {
   vpLampObservation lamp;
-  const vpOutlineFit fit =
-      outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(), roi, m_blur);
+  const bool steady = skipSteady && vpDeepestDip(picture.grey, roi) < stripeAnalyzer.minModulation;
+  const vpOutlineFit fit = steady ? vpOutlineFitter::boxOf(roi)
+                                  : outlineFitter.fit(picture.grey, m_timing.linePositions(),
+                                                      m_timing.samplePositions(), roi, m_blur);
   if (fit.outline.shape == vpLampOutline::Shape::ellipse) {
     m_blur = fit.blur;
   }
-  lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit, roi));
+  if (!steady) {
+    lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit, roi));
+  }
   measureArea(picture, roi, lamp);
   place(lamp, fit, picture.transposed);
   lamp.cut = roi.cutAcross || roi.cutAlong;

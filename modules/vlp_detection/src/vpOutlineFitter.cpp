@@ -33,22 +33,6 @@ std::vector<cv::Point2f> thinned(std::vector<cv::Point2f> points)
   return few;
 }
 
-vpLampOutline boxOf(const vpLedRoi &roi)
-{
-  vpLampOutline outline;
-  const double left = roi.box.x - 0.5, top = roi.box.y - 0.5;
-  const double right = left + roi.box.width, bottom = top + roi.box.height;
-  outline.corners = {Eigen::Vector2d(left, top), Eigen::Vector2d(right, top), Eigen::Vector2d(right, bottom),
-                     Eigen::Vector2d(left, bottom)};
-  outline.centre = Eigen::Vector2d(0.5 * (left + right), 0.5 * (top + bottom));
-  outline.a = 0.5 * std::max(roi.box.width, roi.box.height);
-  outline.b = 0.5 * std::min(roi.box.width, roi.box.height);
-  outline.centreCovariance =
-      Eigen::Vector2d(roi.box.width * roi.box.width, roi.box.height * roi.box.height).asDiagonal();
-  outline.centreCovariance /= 12;
-  return outline;
-}
-
 /*!
   The likelier of the two shapes, data and prior together. What thin stripes do not tell apart adds to the
   covariance: the distance of the two middles, by the other shape's probability.
@@ -129,13 +113,29 @@ void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines,
 
 } // namespace
 
+vpOutlineFit vpOutlineFitter::boxOf(const vpLedRoi &roi)
+{
+  vpOutlineFit fit;
+  vpLampOutline &outline = fit.outline;
+  const double left = roi.box.x - 0.5, top = roi.box.y - 0.5;
+  const double right = left + roi.box.width, bottom = top + roi.box.height;
+  outline.corners = {Eigen::Vector2d(left, top), Eigen::Vector2d(right, top), Eigen::Vector2d(right, bottom),
+                     Eigen::Vector2d(left, bottom)};
+  outline.centre = Eigen::Vector2d(0.5 * (left + right), 0.5 * (top + bottom));
+  outline.a = 0.5 * std::max(roi.box.width, roi.box.height);
+  outline.b = 0.5 * std::min(roi.box.width, roi.box.height);
+  outline.centreCovariance =
+      Eigen::Vector2d(roi.box.width * roi.box.width, roi.box.height * roi.box.height).asDiagonal();
+  outline.centreCovariance /= 12;
+  return fit;
+}
+
 vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
                                   const std::vector<double> &linePositions,
                                   const std::vector<double> &samplePositions, const vpLedRoi &roi,
                                   double likelyBlur) const
 {
-  vpOutlineFit best;
-  best.outline = boxOf(roi);
+  vpOutlineFit best = boxOf(roi);
   const bool fromBorderToBorder = roi.box.width >= lines.cols - 2 || roi.box.height >= lines.rows - 2;
   if (fromBorderToBorder) {
     return best;
@@ -177,7 +177,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     }
   }
   if (!even && (roi.cutAcross || roi.cutAlong)) {
-    best.outline = boxOf(roi); // what is seen of its light says nothing of its middle
+    best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
   } else if (!even && (isEllipse || ellipseMisfit < std::min(softMisfit * start.radius(), 2 * sidesMisfit))) {
     if (!isEllipse) {
       best.outline = start.outline(Eigen::MatrixXd::Zero(2, 2));

@@ -335,8 +335,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
   if (!(features.misfit < beyondDoubt)) {
     const std::optional<vpWordSearch::Found> word =
-        findWord(profile, byAll.envelope, byAll.settings.envelopeOrder, *this, features.misfit,
-                 peaks.size());
+        findWord(profile, byAll.envelope, byAll.settings.envelopeOrder, *this, features.misfit, peaks.size());
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }

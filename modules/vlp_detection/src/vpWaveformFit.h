@@ -141,12 +141,12 @@ private:
   bool m_freeDuty = true;
   double m_darkness = 0; // 1 / variance of the offset about 0
   // Of each line.
-  Eigen::ArrayXd m_time;                // s, from the profile's middle
-  Eigen::ArrayXd m_light;               // grey levels
-  Eigen::ArrayXd m_weight;              // 1 / variance
-  Eigen::ArrayXd m_given;               // envelope, grey levels
-  Eigen::MatrixXd m_powers;             // the same times powers of the time
-  Eigen::MatrixXd m_ofWave, m_ofSquare; // by which to sum the wave, its square
+  Eigen::ArrayXd m_time;                             // s, from the profile's middle
+  Eigen::ArrayXd m_light;                            // grey levels
+  Eigen::ArrayXd m_weight;                           // 1 / variance
+  Eigen::ArrayXd m_given;                            // envelope, grey levels
+  Eigen::MatrixXd m_powers;                          // the same times powers of the time
+  Eigen::MatrixXd m_ofWave, m_ofSquare;              // by which to sum the wave, its square
   double m_weights = 0, m_lights = 0, m_squares = 0; // sums of weights, times light, times its square
   Vector m_x = Vector::Zero();
   Vector m_sigma = Vector::Zero();

@@ -86,8 +86,7 @@ Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMat
   for (size_t k = 0; k < (disk ? rimPoints : 4); ++k) {
     const double angle = lamp.yaw + M_PI * static_cast<double>(2 * k + 1) / 4; // of a corner
     const Eigen::Vector3d rim =
-        disk ? half * circle[k]
-             : std::sqrt(2) * half * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+        disk ? half * circle[k] : std::sqrt(2) * half * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
     if (!pixelOf(inFrame(wMb, lamp.position + rim), rig, p)) {
       return Eigen::Vector2d::Zero();
     }

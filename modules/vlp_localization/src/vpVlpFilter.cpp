@@ -63,7 +63,7 @@ struct vpVlpFilter::Predicted {
   bool inFront = false;
   double depth = 0;
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
-  Eigen::Matrix<double, Eigen::Dynamic, 2> Ht; // transposed
+  Eigen::Matrix<double, Eigen::Dynamic, 2> Ht;        // transposed
   Eigen::Matrix2d ownDoubt = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
 };
 

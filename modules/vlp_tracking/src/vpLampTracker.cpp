@@ -13,44 +13,18 @@
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
+#include "vpLampBoxes.h"
 #include "vpLampTrack.h"
 
 BEGIN_VISP_NAMESPACE
 
+using vpLampBoxes::boxOf;
+using vpLampBoxes::inside;
+using vpLampBoxes::overlap;
+using vpLampBoxes::tells;
+
 namespace
 {
-vpRect boxOf(const vpLampOutline &outline)
-{
-  const Eigen::Vector4d box = outline.box();
-  return {box(0), box(1), box(2) - box(0), box(3) - box(1)};
-}
-
-//! Larger by \e share of its size on each side.
-vpRect widened(const vpRect &rect, double share)
-{
-  const double x = share * rect.getWidth(), y = share * rect.getHeight();
-  return {rect.getLeft() - x, rect.getTop() - y, rect.getWidth() + 2 * x, rect.getHeight() + 2 * y};
-}
-
-//! The part of a rectangle that lies in a picture; of no size where there is none.
-vpRect inside(const vpRect &rect, const vpImage<unsigned char> &I)
-{
-  const double left = std::max(0.0, std::ceil(rect.getLeft())), top = std::max(0.0, std::ceil(rect.getTop())),
-               right = std::min(I.getWidth() - 1.0, std::floor(rect.getLeft() + rect.getWidth())),
-               bottom = std::min(I.getHeight() - 1.0, std::floor(rect.getTop() + rect.getHeight()));
-  return {left, top, std::max(0.0, right - left + 1), std::max(0.0, bottom - top + 1)};
-}
-
-double overlap(const vpRect &a, const vpRect &b)
-{
-  const double x = std::min(a.getLeft() + a.getWidth(), b.getLeft() + b.getWidth()) -
-                   std::max(a.getLeft(), b.getLeft()),
-               y = std::min(a.getTop() + a.getHeight(), b.getTop() + b.getHeight()) -
-                   std::max(a.getTop(), b.getTop());
-  const double common = std::max(0.0, x) * std::max(0.0, y);
-  return common / std::max(1.0, a.getWidth() * a.getHeight() + b.getWidth() * b.getHeight() - common);
-}
-
 bool blinks(const vpLampObservation &seen)
 {
   return seen.features.signal != vpStripeFeatures::Signal::unmodulated &&
@@ -58,7 +32,10 @@ bool blinks(const vpLampObservation &seen)
 }
 } // namespace
 
-vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detector(rig, map), m_rig(rig) {}
+vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detector(rig, map), m_rig(rig)
+{
+  detector.skipSteady = true; // none of them is followed
+}
 vpLampTracker::~vpLampTracker() = default;
 vpLampTracker::vpLampTracker(vpLampTracker &&) noexcept = default;
 
@@ -70,6 +47,7 @@ size_t vpLampTracker::tracks() const
 void vpLampTracker::reset()
 {
   m_tracks.clear();
+  m_steady.clear();
   m_searched.clear();
   m_inSight = 0;
   m_any = false;
@@ -95,9 +73,14 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
     m_searched.clear();
     detector.detect(frame.I);
     m_observations = detector.observations();
+    m_steady.clear();
+    for (const vpLampObservation &seen : m_observations) {
+      rememberSteady(seen, frame.timestamp);
+    }
   } else {
     glance(frame.I);
-    search(frame.I);
+    moveSteady(frame.timestamp);
+    search(frame);
   }
 
   // Which region is which lamp; what all its frames say of it; what is new.
@@ -108,7 +91,7 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
       followGlanced(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
     } else if (m_trackOf[i] >= 0) {
       follow(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
-    } else if (blinks(m_observations[i])) {
+    } else if (tells(m_observations[i])) {
       bear(m_observations[i], frame);
     }
   }
@@ -135,152 +118,6 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
     track.remember(frame.I);
   }
   return m_observations;
-}
-
-//! Whether the lamp has its middle about there, and is as it was.
-bool vpLampTracker::glanceAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place)
-{
-  if (!track.known) {
-    return false;
-  }
-  vpLampObservation lamp = *track.known;
-  lamp.outline.centre = {place.get_u(), place.get_v()};
-  if (detector.glance(I, lamp)) {
-    track.found = std::move(lamp);
-  }
-  return track.found.has_value();
-}
-
-//! The same in the middle of the nearest window in which a lamp is expected.
-bool vpLampTracker::glanceAsExpected(Track &track, const vpImage<unsigned char> &I,
-                                     const std::vector<vpRect> &expected)
-{
-  static const double farthest = 1; // of the lamp's extent, since the frame before
-  const vpImagePoint before = track.place.getCenter();
-  auto way = [&before](const vpRect &window) { return vpImagePoint::distance(window.getCenter(), before); };
-  const auto nearest = std::min_element(expected.begin(), expected.end(), [&way](const auto &a, const auto &b) {
-    return way(a) < way(b);
-  });
-  return nearest != expected.end() &&
-         way(*nearest) < farthest * std::max(track.place.getWidth(), track.place.getHeight()) &&
-         glanceAt(track, I, nearest->getCenter());
-}
-
-//! The lamps that are where their targets are, and as they were.
-void vpLampTracker::glance(const vpImage<unsigned char> &I)
-{
-  for (size_t t = 0; t < m_tracks.size(); ++t) {
-    Track &track = m_tracks[t];
-    if (track.astray) {
-      continue;
-    }
-    if (track.found || glanceAt(track, I, track.target->center())) {
-      track.taken = true;
-      m_observations.push_back(*track.found);
-      m_trackOf.push_back(static_cast<int>(t));
-    }
-  }
-  // Of lamps that blink alike, the target of one that is hidden may be another one: it is that which came
-  // from nearer by.
-  static const double same = 0.3;
-  auto way = [this](size_t i) { // px, since the frame before
-    const vpLampOutline &outline = m_observations[i].outline;
-    return vpImagePoint::distance(m_tracks[static_cast<size_t>(m_trackOf[i])].place.getCenter(),
-                                  {outline.centre.y(), outline.centre.x()});
-  };
-  std::vector<bool> another(m_observations.size(), false);
-  for (size_t i = 0; i < m_observations.size(); ++i) {
-    for (size_t k = i + 1; k < m_observations.size(); ++k) {
-      if (overlap(boxOf(m_observations[i].outline), boxOf(m_observations[k].outline)) > same) {
-        another[way(i) > way(k) ? i : k] = true;
-      }
-    }
-  }
-  for (size_t i = another.size(); i-- > 0;) {
-    if (another[i]) {
-      m_tracks[static_cast<size_t>(m_trackOf[i])].taken = false;
-      m_observations.erase(m_observations.begin() + static_cast<std::ptrdiff_t>(i));
-      m_trackOf.erase(m_trackOf.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-  }
-}
-
-//! What glances left open: lamps that were not found, and other windows that show more than lamps that were.
-void vpLampTracker::search(const vpImage<unsigned char> &I)
-{
-  static const double halo = 0.1, beyond = 4; // of a lamp's extent; px
-  std::vector<vpRect> known, open;
-  double noise = 0; // grey levels
-  for (const vpLampObservation &lamp : m_observations) {
-    const vpRect box = boxOf(lamp.outline);
-    const double wider = halo + beyond / std::max(1.0, std::min(box.getWidth(), box.getHeight()));
-    known.push_back(widened(box, wider));
-    noise = std::max(noise, lamp.noise);
-  }
-  auto shown = [this](const vpRect &window) { // the lamp that is expected there
-    return std::any_of(m_observations.begin(), m_observations.end(),
-                       [&window](const vpLampObservation &lamp) {
-                         return window.isInside({lamp.outline.centre.y(), lamp.outline.centre.x()});
-                       });
-  };
-  for (size_t w = 0; w < m_searched.size(); ++w) {
-    const bool strip = w + 1 == m_searched.size(), target = w < m_tracks.size();
-    const bool found = target ? m_tracks[w].taken : !strip && shown(m_searched[w]);
-    if (!found && (target || known.empty() || detector.showsMore(I, m_searched[w], known, noise))) {
-      open.push_back(m_searched[w]);
-    }
-  }
-  if (open.empty()) {
-    return;
-  }
-  detector.detect(I, open);
-  for (const vpLampObservation &seen : detector.observations()) {
-    const vpImagePoint middle(seen.outline.centre.y(), seen.outline.centre.x());
-    const vpRect box = boxOf(seen.outline);
-    const bool twice =
-        std::any_of(m_observations.begin(), m_observations.begin() + static_cast<long>(known.size()),
-                    [&](const vpLampObservation &lamp) {
-                      static const double same = 0.3;
-                      const vpRect other = boxOf(lamp.outline);
-                      return other.isInside(middle) || overlap(box, other) > same;
-                    });
-    if (!twice) {
-      m_observations.push_back(seen);
-    }
-  }
-}
-
-//! Where to look: around each target, where lamps are expected, and the strip whose turn it is.
-std::vector<vpRect> vpLampTracker::windows(const vpVlpFrame &frame, const std::vector<vpRect> &expected)
-{
-  std::vector<vpRect> all;
-  for (Track &track : m_tracks) {
-    track.taken = false;
-    track.found.reset();
-    if (track.astray) {
-      track.window = track.place;
-    } else {
-      const bool there = m_inSight >= needed && glanceAsExpected(track, frame.I, expected) &&
-                         track.target->goOn(boxOf(track.found->outline));
-      if (!there) {
-        track.target->track(frame.I);
-      }
-      track.window = track.target->window();
-    }
-    all.push_back(widened(track.window, margin));
-  }
-  all.insert(all.end(), expected.begin(), expected.end());
-  all.push_back(strip());
-  return all;
-}
-
-vpRect vpLampTracker::strip()
-{
-  const bool columns = m_rig.shutter.alongColumns();
-  const double length = columns ? m_rig.width : m_rig.height, across = columns ? m_rig.height : m_rig.width;
-  const auto strips = static_cast<unsigned int>(std::ceil(1 / std::max(0.01, std::min(1.0, searchShare))));
-  const double width = length / strips, from = (m_strip++ % strips) * width;
-  return columns ? vpRect(from, 0, width, across) : vpRect(0, from, across, width);
 }
 
 /*!

@@ -40,6 +40,8 @@ public:
   vpOutlineFitter outlineFitter;
   vpStripeAnalyzer stripeAnalyzer;
   vpLedIdRecognizer recognizer;
+  bool skipSteady =
+      false; // regions whose lines show no stripes at a first look have no outline but their box
 
   //! \throw vpException where the rig has no picture size.
   vpLedDetector(const vpVlpRig &rig, const vpLampMap &map);

@@ -53,6 +53,9 @@ public:
   vpOutlineFit fit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
                    const std::vector<double> &samplePositions, const vpLedRoi &roi,
                    double likelyBlur = 0) const;
+
+  //! That of the lit pixels, a region, as uncertain as it is large.
+  static vpOutlineFit boxOf(const vpLedRoi &roi);
 };
 
 END_VISP_NAMESPACE

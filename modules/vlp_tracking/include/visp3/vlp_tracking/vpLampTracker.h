@@ -34,7 +34,8 @@ BEGIN_VISP_NAMESPACE
   A picture that shows all lamps as the frame before did, pixel for pixel, has come twice: sensors are never
   that quiet. Its stripes say nothing new, so that they do not count again.
 
-  Steady regions (windows, lamps without stripes) are seen where the search comes by, and not followed.
+  Steady regions (windows, lamps without stripes) are seen where the search comes by, and not followed; for a
+  while it passes over where they are, moved along with the lamps.
 
   \code
   vpLampTracker tracker(rig, map);
@@ -53,6 +54,7 @@ public:
   double searchShare = 0.2; // of the picture that is searched for new lamps in each frame
   size_t needed = 2;        // lamps in sight with an id, below which all of it is
   unsigned int sure = 5;    // frames that agree on a lamp, after which a glance does to find it again
+  double steadiness = 2;    // s, for which a region that tells nothing of any lamp is not looked at again
 
   vpLampTracker(const vpVlpRig &rig, const vpLampMap &map);
   ~vpLampTracker();
@@ -80,13 +82,19 @@ public:
 
 private:
   struct Track;
+  struct Steady {
+    vpRect box;       // px, in the last frame
+    double until = 0; // s
+  };
 
   std::vector<vpRect> windows(const vpVlpFrame &frame, const std::vector<vpRect> &expected);
   vpRect strip();
   bool glanceAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place);
   bool glanceAsExpected(Track &track, const vpImage<unsigned char> &I, const std::vector<vpRect> &expected);
   void glance(const vpImage<unsigned char> &I);
-  void search(const vpImage<unsigned char> &I);
+  void search(const vpVlpFrame &frame);
+  void moveSteady(double time);
+  void rememberSteady(const vpLampObservation &seen, double time);
   void assign();
   void followGlanced(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
   void setRight(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
@@ -97,6 +105,7 @@ private:
 
   vpVlpRig m_rig;
   std::vector<Track> m_tracks;
+  std::vector<Steady> m_steady;
   std::vector<vpRect> m_searched;
   std::vector<vpLampObservation> m_observations;
   std::vector<int> m_trackOf; // of each observation, -1: none
