@@ -98,6 +98,9 @@ private:
   Posterior sampled(const Posterior &from, int samples, double temperature);
   vpDutySlice slice(double atDuty);
 
+  //! Whether few lines make a pattern that repeats over the whole profile: its edges pass from line to line
+  //! all at once.
+  bool repeats() const;
   void prepareSums();
   void evaluateWave(const Vector &x, const Eigen::ArrayXd &time, vpPulseWave &wave,
                     vpPulseWave &second) const;

@@ -84,10 +84,10 @@ vpWaveformFit::Posterior vpWaveformFit::posterior()
   static const int few = 64, many = 128; // samples
   static const double good = 0.4;        // share of them that count
   if (m_line < gap * m_profile->exposure) {
-    // What moves no edge from line to line is as bell-shaped as the noise.
+    // What moves few edges from line to line is as bell-shaped as the noise.
     static const double sharp = 0.04; // lines: what one line alone leaves open of an edge in it
     const double open = (m_weight * m_given.square()).inverse().mean() * m_inflation;
-    if (open < sharp * sharp) {
+    if (open < sharp * sharp && !repeats()) {
       return posterior;
     }
     posterior = sampled(posterior, few, m_inflation);
@@ -105,12 +105,14 @@ vpWaveformFit::Posterior vpWaveformFit::posterior()
 
 bool vpWaveformFit::hidesDuty() const
 {
-  static const double hidden = 2;  // lines, of the pulse as it was fitted
+  static const double hidden = 2; // lines, of the pulse as it was fitted
+  return !m_settings.twoPulse && m_x(duty) <= hidden * m_x(exposure) * m_x(frequency) && repeats();
+}
+
+bool vpWaveformFit::repeats() const
+{
   static const double drift = 1.5; // lines, of a pattern that repeats, over the profile
   static const int longest = 8;    // lines, of such a pattern
-  if (m_settings.twoPulse || m_x(duty) > hidden * m_x(exposure) * m_x(frequency)) {
-    return false;
-  }
   const double periods = m_x(frequency) * m_line; // of a line
   for (int pattern = 1; pattern <= longest; ++pattern) {
     if (std::abs(std::remainder(pattern * periods, 1)) * static_cast<double>(m_time.size()) < drift) {
