@@ -2,10 +2,16 @@
 # Instructions of one core per frame, from frame to pose, as callgrind counts them: the same from run to run.
 #   cmake --build --preset release --target bench-instructions
 #   bash tests/bench/instructions.sh PROGRAM [FRAMES]   PROGRAM: bench_instructions; default 4 frames each
+#   bash tests/bench/instructions.sh --check PROGRAM    fails where one is 10 % above instructions.txt; 77: cannot tell
 set -euo pipefail
 export LC_ALL=C
+check=false
+if [ "${1:-}" = --check ]; then
+  check=true
+  shift
+fi
 if [ $# -lt 1 ] || [ $# -gt 2 ]; then
-  echo "usage: instructions.sh PROGRAM [FRAMES]" >&2
+  echo "usage: instructions.sh [--check] PROGRAM [FRAMES]" >&2
   exit 2
 fi
 program=$(realpath "$1")
@@ -13,7 +19,12 @@ frames=${2:-4}
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 if ! command -v valgrind >/dev/null; then
   echo "instructions.sh: valgrind is not installed; cmake/install-dependencies.sh does it" >&2
+  $check && exit 77
   exit 1
+fi
+if $check && ! grep -qw avx2 /proc/cpuinfo; then
+  echo "instructions.sh: instructions.txt has counts with AVX2, which this processor has not" >&2
+  exit 77
 fi
 
 # What code picks by the processor is pinned, so that all machines with AVX2 count alike. Valgrind 3.19 has nothing
@@ -33,6 +44,22 @@ count() # SIZE whole|tracked: millions of instructions per frame
   fi
   awk -v frames="$frames" '$1 == "summary:" { printf "%.3f", $2 / frames / 1e6 }' "$work/counts"
 }
+
+if $check; then
+  failed=0
+  while read -r size whole tracked; do
+    for kind in whole tracked; do
+      counted=$(count "$size" "$kind")
+      awk -v counted="$counted" -v before="${!kind}" -v what="$size $kind" 'BEGIN {
+        printf "%s: %.3f million instructions a frame, %.3f before (%+.1f %%)\n", what, counted, before,
+               100 * (counted / before - 1)
+        exit counted > 1.1 * before
+      }' || failed=1
+    done
+  done < <(grep -v '^#' tests/bench/instructions.txt)
+  [ $failed = 0 ] || echo "instructions.sh: more than 10 % above tests/bench/instructions.txt" >&2
+  exit $failed
+fi
 
 echo "Millions of instructions per frame, mean of $frames:"
 echo

@@ -177,6 +177,57 @@ TEST(LedDetector, UnmodulatedLampAndWindowAreNoLampsOfTheMap)
   }
 }
 
+// At a first look what shines steadily is told from what blinks, whatever its shape; lamps are found as ever.
+TEST(LedDetector, SteadyLightNeedsNoOutline)
+{
+  vpLampPicture made = picture();
+  vpPaintedLamp bulb = lamp(200.4, 150.2, 0), panel = lamp(205.1, 60.3, 0), tube = lamp(210, 290, 0);
+  panel.angle = 0.2;
+  panel.rectangle(60, 45);
+  tube.rectangle(90, 14);
+  for (vpPaintedLamp *steady : {&bulb, &panel, &tube}) {
+    steady->pulses = {{0, 1}};
+    made.lamps.push_back(*steady);
+  }
+  const vpImage<unsigned char> I = made.render();
+  vpLedDetector with(vpUpwardRig(400, 320), map()), without(vpUpwardRig(400, 320), map());
+  without.skipSteady = true;
+  ASSERT_TRUE(with.detect(I));
+  ASSERT_TRUE(without.detect(I));
+  ASSERT_EQ(without.observations().size(), with.observations().size());
+  int boxes = 0;
+  for (const vpLampObservation &seen : without.observations()) {
+    const bool steady = seen.features.signal == vpStripeFeatures::Signal::unmodulated;
+    boxes += steady ? 1 : 0;
+    EXPECT_EQ(seen.outline.shape == vpLampOutline::Shape::region, steady);
+    if (!seen.id.empty()) {
+      ASSERT_NE(find(with, seen.id), nullptr);
+      EXPECT_LT((find(with, seen.id)->point - seen.point).norm(), 1e-3);
+    }
+  }
+  EXPECT_EQ(boxes, 3);
+  for (const char *id : {"L2000", "L2600", "L3500"}) {
+    EXPECT_EQ(find(without, id) != nullptr, find(with, id) != nullptr) << id;
+  }
+}
+
+// Stripes that hardly show, as of an exposure of nearly a period: no first look may take them for steady
+// light.
+TEST(LedDetector, FaintStripesAreNoSteadyLight)
+{
+  for (const double amplitude : {60.0, 150.0}) {
+    vpLampPicture made = picture();
+    made.exposure = 0.85 / 2000;
+    made.lamps = {lamp(80.3, 70.6, 2000)};
+    made.lamps[0].amplitude = amplitude;
+    vpLedDetector detector(vpUpwardRig(400, 320), map());
+    detector.skipSteady = true;
+    ASSERT_TRUE(detector.detect(made.render()));
+    ASSERT_EQ(detector.observations().size(), 1u);
+    EXPECT_NE(detector.observations()[0].features.signal, vpStripeFeatures::Signal::unmodulated) << amplitude;
+  }
+}
+
 TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
 {
   vpLampPicture painted = picture();

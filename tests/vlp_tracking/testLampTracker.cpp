@@ -12,114 +12,14 @@
 #include <set>
 
 #include <gtest/gtest.h>
-#include <visp3/vlp_tracking/vpLampTracker.h>
 
 #include "common/vpExpectError.h"
-#include "common/vpLampPicture.h"
-#include "common/vpUpwardRig.h"
+#include "lampScene.h"
 
-#ifdef ENABLE_VISP_NAMESPACE
-using namespace VISP_NAMESPACE_NAME;
-#endif
+using namespace lampScene;
 
 namespace
 {
-const double frameTime = 1.0 / 30; // s
-
-//! A lamp of the scene: its id is its frequency's, as the map has it.
-struct Lamp {
-  double u, v;      // px
-  double frequency; // Hz
-};
-
-std::string idOf(double frequency)
-{
-  return "L" + std::to_string(static_cast<int>(frequency));
-}
-
-//! A small camera, its lamps, and the tracker that looks at them.
-class Scene
-{
-public:
-  int width = 400, height = 320; // px
-  bool columns = false;
-  double radius = 26; // px
-
-  explicit Scene(bool readAlongColumns = false) : columns(readAlongColumns)
-  {
-    if (columns) {
-      std::swap(width, height);
-    }
-  }
-
-  vpVlpRig rig() const
-  {
-    vpVlpRig rig = vpUpwardRig(static_cast<unsigned int>(width), static_cast<unsigned int>(height));
-    rig.shutter.readout = columns ? vpRollingShutter::Readout::columns : vpRollingShutter::Readout::rows;
-    return rig;
-  }
-
-  static vpLampMap map()
-  {
-    vpLampMap map;
-    for (const double frequency : {2000.0, 2600.0, 3500.0, 4400.0}) {
-      vpLamp lamp;
-      lamp.id = idOf(frequency);
-      lamp.modulation.kind = vpModulation::Kind::pwm;
-      lamp.modulation.frequency = frequency;
-      map.lamps.push_back(lamp);
-    }
-    return map;
-  }
-
-  vpLampTracker tracker() const { return vpLampTracker(rig(), map()); }
-
-  //! Lamps share no clock with the camera: their phase is another one in each frame.
-  vpVlpFrame frame(int k, const std::vector<Lamp> &lamps) const
-  {
-    vpLampPicture picture;
-    picture.width = width;
-    picture.height = height;
-    picture.columns = columns;
-    picture.rowTime = picture.exposure = 40e-6;
-    picture.blur = 0.7;
-    picture.seed = static_cast<unsigned int>(1 + k);
-    for (const Lamp &lamp : lamps) {
-      vpPaintedLamp painted;
-      painted.centre = columns ? Eigen::Vector2d(lamp.v, lamp.u) : Eigen::Vector2d(lamp.u, lamp.v);
-      painted.a = painted.b = radius;
-      painted.frequency = lamp.frequency;
-      painted.phase = 0.37 * k + 0.1 * lamp.frequency / 1000;
-      if (lamp.frequency > 0) {
-        painted.pwm(0.5);
-      }
-      picture.lamps.push_back(painted);
-    }
-    return {picture.render(), k * frameTime, std::to_string(k)};
-  }
-
-  //! The observation at a lamp's place, nullptr where there is none.
-  const vpLampObservation *seen(const std::vector<vpLampObservation> &all, const Lamp &lamp) const
-  {
-    const Eigen::Vector2d place = columns ? Eigen::Vector2d(lamp.v, lamp.u) : Eigen::Vector2d(lamp.u, lamp.v);
-    const auto found = std::find_if(all.begin(), all.end(), [&](const vpLampObservation &each) {
-      return (each.point - place).norm() < 3;
-    });
-    return found == all.end() ? nullptr : &*found;
-  }
-};
-
-std::vector<Lamp> moved(std::vector<Lamp> lamps, double right, double down)
-{
-  for (Lamp &lamp : lamps) {
-    lamp.u += right;
-    lamp.v += down;
-  }
-  return lamps;
-}
-
-const std::vector<Lamp> three = {{60.3, 60.6, 2000}, {180.7, 70.2, 2600}, {80.4, 200.8, 3500}};
-
 //! Each lamp keeps the number of its first frame, and its id.
 void expectNumbersStay(const Scene &scene, vpLampTracker &tracker, int frames,
                        const std::function<std::vector<Lamp>(int)> &lamps)

@@ -155,3 +155,40 @@ TEST(TargetTracker, DisplaysWithoutADisplay)
   tracker.display(I, vpColor::red, 2);
   tracker.display(made.colour(0), vpColor::red);
 }
+
+// Told where its target is, it need not look, and knows the target's motion all the same.
+TEST(TargetTracker, GoesOnWhereItIsToldAndThenByItself)
+{
+  const vpTargetScene made = disc();
+  vpCamshiftKalmanTracker tracker;
+  expectCode([&] { tracker.goOn(vpRect(10, 10, 70, 70)); }, vpException::notInitialized);
+  run(tracker, made, 1);
+  auto window = [&](int k) {
+    const Eigen::Vector2d middle = made.path(k);
+    return vpRect(middle.x() - 0.5 * (made.size - 1), middle.y() - 0.5 * (made.size - 1), made.size,
+                  made.size);
+  };
+  int k = 1;
+  for (; k < 15; ++k) {
+    ASSERT_TRUE(tracker.goOn(window(k)));
+    EXPECT_LT(errorOf(tracker, made, k), 0.6);
+  }
+  EXPECT_NEAR(tracker.velocity().get_u(), 2.2, 0.3);
+  EXPECT_NEAR(tracker.velocity().get_v(), 0.7, 0.3);
+  for (; k < 25; ++k) {
+    EXPECT_TRUE(tracker.track(made.grey(k)));
+    EXPECT_LT(errorOf(tracker, made, k), 3);
+  }
+}
+
+TEST(TargetTracker, MethodsThatHaveToLookSaySo)
+{
+  const vpTargetScene made = disc();
+  for (const Method method : {Method::dot2, Method::meEllipse}) {
+    const std::unique_ptr<vpTargetTracker> tracker = vpTargetTracker::make(method);
+    run(*tracker, made, 1);
+    const vpImagePoint before = tracker->center();
+    EXPECT_FALSE(tracker->goOn(vpRect(10, 10, 70, 70)));
+    EXPECT_EQ(tracker->center(), before);
+  }
+}

@@ -103,7 +103,6 @@ bool vpVlpLocalizer::inOrder(double time)
 
 const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &frame)
 {
-  tracker.detector.skipSteady = tracking;
   if (tracking) {
     return tracker.track(frame, expectedWindows(frame.timestamp));
   }

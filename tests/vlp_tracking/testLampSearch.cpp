@@ -1,0 +1,138 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Where lamps are looked for: as expected, beside steady lights, and again where these were.
+
+#include <gtest/gtest.h>
+
+#include "lampScene.h"
+
+using namespace lampScene;
+
+namespace
+{
+const int firstFrames = 8; // after which glances will do
+
+std::vector<Lamp> with(std::vector<Lamp> lamps, const Lamp &another)
+{
+  lamps.push_back(another);
+  return lamps;
+}
+
+//! Frames from \e first to before \e last in which something is seen at a lamp's place.
+int sightings(const Scene &scene, vpLampTracker &tracker, int first, int last, double pace,
+              const std::vector<Lamp> &lamps, const Lamp &lamp)
+{
+  int seen = 0;
+  for (int k = first; k < last; ++k) {
+    const std::vector<Lamp> now = moved(lamps, pace * k, 0);
+    const std::vector<vpLampObservation> all = tracker.track(scene.frame(k, now));
+    seen += scene.seen(all, moved({lamp}, pace * k, 0)[0]) != nullptr ? 1 : 0;
+    for (const Lamp &each : moved(three, pace * k, 0)) {
+      const vpLampObservation *found = scene.seen(all, each);
+      EXPECT_TRUE(found != nullptr && found->id == idOf(each.frequency)) << "frame " << k;
+    }
+  }
+  return seen;
+}
+
+const Lamp steady = {300, 240, 0};
+} // namespace
+
+// A strip comes round every five frames, 30 of them a second.
+TEST(LampSearch, SteadyRegionIsPassedOverForAWhile)
+{
+  for (const double pace : {0.0, 1.0}) { // px a frame
+    SCOPED_TRACE(pace);
+    const Scene scene;
+    const std::vector<Lamp> lamps = with(three, steady);
+    auto seen = [&](double steadiness) {
+      vpLampTracker tracker = scene.tracker();
+      tracker.steadiness = steadiness;
+      EXPECT_GE(sightings(scene, tracker, 0, 10, pace, lamps, steady), 1);
+      return sightings(scene, tracker, 10, 58, pace, lamps, steady);
+    };
+    const int always = seen(0), now = seen(0.3), hardly = seen(2);
+    EXPECT_GE(always, 8);
+    EXPECT_GE(now, 2);
+    EXPECT_LT(now, always);
+    EXPECT_LE(hardly, 3);
+  }
+}
+
+TEST(LampSearch, LampBesideASteadyRegionIsFoundAtOnce)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  const std::vector<Lamp> before = with(three, steady);
+  const Lamp late = {300, 120, 4400};
+  sightings(scene, tracker, 0, 20, 0, before, steady);
+  EXPECT_GE(sightings(scene, tracker, 20, 27, 0, with(before, late), late), 1);
+  EXPECT_EQ(tracker.tracks(), 4u);
+}
+
+TEST(LampSearch, LampInPlaceOfASteadyRegionIsFoundOnceThatIsForgotten)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  sightings(scene, tracker, 0, 10, 0, with(three, steady), steady);
+  const Lamp late = {steady.u, steady.v, 4400};
+  EXPECT_GE(sightings(scene, tracker, 10, 77, 0, with(three, late), late), 1);
+  EXPECT_EQ(tracker.tracks(), 4u);
+}
+
+TEST(LampSearch, LampThatIsExpectedBesideASteadyRegionIsFoundAtOnce)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  sightings(scene, tracker, 0, 10, 0, with(three, steady), steady);
+  const Lamp late = {steady.u, steady.v, 4400};
+  const std::vector<vpLampObservation> all =
+      tracker.track(scene.frame(10, with(three, late)), {vpRect(250, 190, 100, 100)});
+  const vpLampObservation *found = scene.seen(all, late);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->id, idOf(4400));
+}
+
+// Farther than its own extent from frame to frame: no tracker of targets could know.
+TEST(LampSearch, LampsThatJumpAreFoundWhereTheyAreExpected)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  int k = 0;
+  for (; k < firstFrames; ++k) {
+    tracker.track(scene.frame(k, three));
+  }
+  for (const double jump : {45.0, 0.0, 45.0}) {
+    const std::vector<Lamp> now = moved(three, jump, 0.5 * jump);
+    std::vector<vpRect> expected;
+    for (const Lamp &lamp : now) {
+      const double half = 1.7 * scene.radius;
+      expected.emplace_back(lamp.u - half, lamp.v - half, 2 * half, 2 * half);
+    }
+    const std::vector<vpLampObservation> all = tracker.track(scene.frame(k++, now), expected);
+    for (const Lamp &lamp : now) {
+      const vpLampObservation *found = scene.seen(all, lamp);
+      ASSERT_NE(found, nullptr) << jump;
+      EXPECT_EQ(found->id, idOf(lamp.frequency));
+      EXPECT_LE(found->track, 3u);
+    }
+    EXPECT_EQ(tracker.tracks(), 3u);
+  }
+}
+
+// Its first sight says nothing of a frequency; it is a lamp as soon as one does.
+TEST(LampSearch, RegionThatTellsNothingIsNotFollowed)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  const Lamp slow = {300, 240, 150}; // a stripe of 83 lines
+  for (int k = 0; k < 8; ++k) {
+    tracker.track(scene.frame(k, with(three, slow)));
+    EXPECT_EQ(tracker.tracks(), 3u) << k;
+  }
+  const Lamp faster = {slow.u, slow.v, 4400};
+  sightings(scene, tracker, 8, 80, 0, with(three, faster), faster);
+  EXPECT_EQ(tracker.tracks(), 4u);
+}
