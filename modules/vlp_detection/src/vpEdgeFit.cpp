@@ -184,6 +184,7 @@ void vpEdgeFit<Model>::findEnds()
   m_along.clear();
   const int from = std::max(0, static_cast<int>(std::floor(top)) - 1);
   const int to = std::min(m_lines->rows - 1, static_cast<int>(std::ceil(bottom)) + 1);
+  m_ends.reserve(2 * static_cast<size_t>(std::max(0, to - from + 1)));
   addEnds(from, to);
 }
 
@@ -278,8 +279,8 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
 {
   static const double fewest = 3;     // ends
   static const double sharpest = 0.1; // px of blur; the pixels themselves hide anything sharper
-  Eigen::MatrixXd H, data;
-  Eigen::VectorXd g;
+  Eigen::Matrix<double, N, N> H, data;
+  Eigen::Matrix<double, N, 1> g;
   Equations equations;
   const double radius = m_model.radius();
   const double widest = 0.15 * radius + 1;
@@ -306,11 +307,11 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     g = equations.g;
     m_prior = m_model.addPrior(shapeSigma, H, g);
     H.diagonal().array() += 1e-9;
-    Eigen::VectorXd step = H.ldlt().solve(g);
+    Eigen::Matrix<double, N, 1> step = H.ldlt().solve(g);
     if (!step.allFinite()) {
       return false;
     }
-    const double longest = step.head(2).norm();
+    const double longest = step.template head<2>().norm();
     const double limit = 0.15 * radius;
     if (longest > limit) {
       step *= limit / longest;

@@ -132,7 +132,7 @@ private:
   double m_reach = 0;     // px on either side of the edge
   int m_every = 1;        // so many lines are looked at one of, eight at a time
   bool m_litOnly = false; // dark lines are not looked at
-  Eigen::MatrixXd m_covariance;
+  Eigen::Matrix<double, N, N> m_covariance = Eigen::Matrix<double, N, N>::Zero();
   double m_residual = 0;
   double m_inflation = 1;
   double m_background = 0;

@@ -207,7 +207,8 @@ void vpEllipseModel::advance(const Vector &step)
   m_shape = rootOf(M.transpose() * M);
 }
 
-double vpEllipseModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
+double vpEllipseModel::addPrior(double sigma, Eigen::Ref<Eigen::MatrixXd> H,
+                                Eigen::Ref<Eigen::VectorXd> g) const
 {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(m_shape);
   const double logRatio = std::log(eigen.eigenvalues()(1) / eigen.eigenvalues()(0)); // log(a / b)
@@ -271,7 +272,7 @@ bool vpEllipseModel::plausible(const cv::Rect &box) const
          b > 0.2 * std::min(box.width, box.height) && a < 4 * b && (m_centre - middle).norm() < 1.5 * size;
 }
 
-vpLampOutline vpEllipseModel::outline(const Eigen::MatrixXd &covariance) const
+vpLampOutline vpEllipseModel::outline(const Eigen::Ref<const Eigen::MatrixXd> &covariance) const
 {
   vpLampOutline outline;
   outline.shape = vpLampOutline::Shape::ellipse;

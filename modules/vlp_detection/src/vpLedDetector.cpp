@@ -247,7 +247,7 @@ bool vpLedDetector::glance(const vpImage<unsigned char> &I, vpLampObservation &l
     return false;
   }
   const vpLinePicture picture(I, false);
-  vpLampGlance found;
+  static thread_local vpLampGlance found; // for its memory
   if (!found.find(picture, m_timing, lamp, outlineFitter.shapeSigma)) {
     return false;
   }

@@ -46,7 +46,7 @@ public:
   double distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const;
   void advance(const Vector &step);
   //! Weak prior towards a circle, added to normal equations H step = g. Returns its own chi-square.
-  double addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
+  double addPrior(double sigma, Eigen::Ref<Eigen::MatrixXd> H, Eigen::Ref<Eigen::VectorXd> g) const;
   //! Range of samples on line \e v at most \e distance outside (inside where negative) the outline; false:
   //! none.
   bool stretch(double v, double distance, double &first, double &last) const;
@@ -61,7 +61,7 @@ public:
   const Eigen::Matrix2d &shape() const { return m_shape; }
   bool plausible(const cv::Rect &box) const;
   //! \param covariance Of the parameters, px and log units.
-  vpLampOutline outline(const Eigen::MatrixXd &covariance) const;
+  vpLampOutline outline(const Eigen::Ref<const Eigen::MatrixXd> &covariance) const;
 
 private:
   vpEllipseModel(const Eigen::Vector2d &centre, const Eigen::Matrix2d &shape)
@@ -87,7 +87,7 @@ public:
   double distance(const Eigen::Vector2d &x, Vector &derivative, Eigen::Vector2d &normal) const;
   void advance(const Vector &step);
   //! Prior towards a square seen from about below, weakest on its sides' ratio.
-  double addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const;
+  double addPrior(double sigma, Eigen::Ref<Eigen::MatrixXd> H, Eigen::Ref<Eigen::VectorXd> g) const;
   bool stretch(double v, double distance, double &first, double &last) const;
   //! Whether line \e v crosses the outline at its first, its last end such that a straight edge models it.
   bool crossedWell(double v, bool first, bool last) const;
@@ -95,7 +95,7 @@ public:
   double radius() const;
   Eigen::Vector2d centre() const { return outline(Eigen::MatrixXd::Zero(parameters, parameters)).centre; }
   bool plausible(const cv::Rect &box) const;
-  vpLampOutline outline(const Eigen::MatrixXd &covariance) const;
+  vpLampOutline outline(const Eigen::Ref<const Eigen::MatrixXd> &covariance) const;
 
 private:
   std::array<Eigen::Vector2d, 4> cornersAt(const Vector &step) const;

@@ -96,7 +96,8 @@ void vpQuadrilateralModel::advance(const Vector &step)
   turnNormals();
 }
 
-double vpQuadrilateralModel::addPrior(double sigma, Eigen::MatrixXd &H, Eigen::VectorXd &g) const
+double vpQuadrilateralModel::addPrior(double sigma, Eigen::Ref<Eigen::MatrixXd> H,
+                                      Eigen::Ref<Eigen::VectorXd> g) const
 {
   double cost = 0;
   auto pull = [&](const Vector &direction, double value, double deviation) {
@@ -228,7 +229,7 @@ bool vpQuadrilateralModel::plausible(const cv::Rect &box) const
   return m_offset[0] + m_offset[2] > 2 && m_offset[1] + m_offset[3] > 2;
 }
 
-vpLampOutline vpQuadrilateralModel::outline(const Eigen::MatrixXd &covariance) const
+vpLampOutline vpQuadrilateralModel::outline(const Eigen::Ref<const Eigen::MatrixXd> &covariance) const
 {
   auto crossing = [](const std::array<Eigen::Vector2d, 4> &c) {
     Eigen::Matrix2d diagonals;

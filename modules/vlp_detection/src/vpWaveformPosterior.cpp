@@ -111,8 +111,8 @@ bool vpWaveformFit::hidesDuty() const
 
 bool vpWaveformFit::repeats() const
 {
-  static const double drift = 1.5; // lines, of a pattern that repeats, over the profile
-  static const int longest = 8;    // lines, of such a pattern
+  static const double drift = 1.5;                // lines, of a pattern that repeats, over the profile
+  static const int longest = 8;                   // lines, of such a pattern
   const double periods = m_x(frequency) * m_line; // of a line
   for (int pattern = 1; pattern <= longest; ++pattern) {
     if (std::abs(std::remainder(pattern * periods, 1)) * static_cast<double>(m_time.size()) < drift) {
