@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/io/vpKeyboard.h>
+#include <visp3/vlp_robot/vpOpenTurtleBot3.h>
 #include <visp3/vlp_servo/vpServoLog.h>
 
 #include "common/vpInterrupt.h"
@@ -27,6 +28,19 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+//! A line of standard output for each, its remark below it.
+vpExitCode listRobots()
+{
+  const std::vector<vpAttachedBoard> boards = vpAttachedBoards();
+  for (const vpAttachedBoard &board : boards) {
+    std::cout << vpOneLine(board.uri) << "\n  " << vpOneLine(board.remark) << "\n";
+  }
+  if (boards.empty()) {
+    spdlog::warn("no board found on USB; one on a serial device is not looked for");
+  }
+  return boards.empty() ? vpExitCode::nothingFound : vpExitCode::done;
+}
+
 //! Around the path and the start.
 Eigen::AlignedBox2d fenceAround(const vpPath &path, const vpServoStart &start)
 {
@@ -141,6 +155,9 @@ private:
 
 vpExitCode vpVlpServo(const vpVlpServoOptions &options)
 {
+  if (options.listRobots) {
+    return listRobots();
+  }
   return Servo(options).run();
 }
 

@@ -26,6 +26,7 @@ Examples:
   vlp-servo --robot sim --scenario data/scenarios/servo.yaml --path data/paths/line-a.yaml --speed 0.004
   vlp-servo --robot sim --scenario data/scenarios/servo.yaml --path data/paths/square.yaml --laps 2 --log run
   vlp-servo --robot opencr:usb --camera aravis://UB300 --rig rig.yaml --lamps lamps.yaml --path line.yaml
+  vlp-servo --list-robots
 
 Robots:
   sim              the TurtleBot of a scenario: its rig, lamps, light and errors; its motion is not driven
@@ -50,7 +51,8 @@ uncertain by more than 20 mm, stands and waits beyond 50 mm, and where no pictur
 after 20 s of waiting, at the fence, with a low battery, and on any error of the base. It ends too on Ctrl-C,
 SIGTERM, any key in the terminal and a click in the window. The base is told to stop in each of these cases.
 
-Exit code: 0 the path was driven to its end, or somebody ended it; 2 bad usage or bad input; 3 the run failed.
+Exit code: 0 the path was driven to its end, or somebody ended it; 2 bad usage or bad input; 3 the run failed,
+or --list-robots found none.
 )";
 
 [[noreturn]] void fail(const std::string &problem)
@@ -93,6 +95,7 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   std::string speed, gain, delay, startText, fence;
   bool openLoop = false, odometryOnly = false, headless = false;
   vpAddName(app, "--robot", robot, "ROBOT", "sim, opencr:usb or opencr:DEVICE");
+  app.add_flag("--list-robots", listRobots, "print the boards that are attached by USB, and end");
   vpAddName(app, "--scenario", scenario, "FILE", "sim: the world, see data/scenarios/servo.yaml");
   app.add_option("--seed", seed, "sim: of all that is left to chance (default 1)")->type_name("N");
   app.add_flag("--typical", typical, "sim: draw the errors of a typical rig, unknown to the robot");
@@ -121,6 +124,9 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   app.add_flag("--headless", headless, "without a window; so it is unless --display is given");
   if (!vpParseCommandLine(app, argc, argv)) {
     return false;
+  }
+  if (listRobots) {
+    return true;
   }
   if (openLoop && odometryOnly) {
     fail("--open-loop: beside --odometry-only, expected one of them");

@@ -20,8 +20,9 @@ BEGIN_VISP_NAMESPACE
 struct vpVlpServoOptions {
   enum class Pose { lamps, odometry, commands };
 
-  std::string robot;    // sim, opencr:usb, opencr:DEVICE
-  std::string scenario; // of sim, a file
+  bool listRobots = false; // and end; the rest is not asked for
+  std::string robot;       // sim, opencr:usb, opencr:DEVICE
+  std::string scenario;    // of sim, a file
   std::uint64_t seed = 1;
   bool typical = false;    // rig errors as vpScenario::useTypicalRig() draws them
   bool wheelsOnly = false; // the turn rate of sim's odometry is that of the wheels

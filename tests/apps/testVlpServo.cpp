@@ -172,11 +172,25 @@ TEST(VlpServo, HelpNamesEveryOptionAndFile)
   EXPECT_EQ(program.wait(), 0);
   EXPECT_EQ(program.err(), "");
   const std::string help = program.out();
-  for (const std::string word :
-       {"--robot",       "--scenario",      "--seed",       "--rig",     "--lamps",    "--camera",
-        "--path",        "--speed",         "--gain",       "--laps",    "--start",    "--fence",
-        "--open-loop",   "--odometry-only", "--log",        "--display", "--headless", "--real-time",
-        "--wheels-only", "Example",         "commands.csv", "poses.tum", "truth.tum",  "Exit code"}) {
+  for (const std::string word : {"--robot", "--list-robots", "--scenario", "--seed",      "--rig",
+                                 "--lamps", "--camera",      "--path",     "--speed",     "--gain",
+                                 "--laps",  "--start",       "--fence",    "--open-loop", "--odometry-only",
+                                 "--log",   "--display",     "--headless", "--real-time", "--wheels-only",
+                                 "Example", "commands.csv",  "poses.tum",  "truth.tum",   "Exit code"}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
+  }
+}
+
+// Nothing is attached here, and on some machines there is no USB to ask.
+TEST(VlpServo, ListOfRobotsSaysWhatItFound)
+{
+  vpProcess program("vlp-servo", {"--list-robots"});
+  const int code = program.wait();
+  EXPECT_EQ(program.out(), "");
+  if (code == 3) {
+    EXPECT_NE(program.err().find("no board found on USB"), std::string::npos) << program.err();
+  } else {
+    EXPECT_EQ(code, 2);
+    EXPECT_NE(program.err().find("USB"), std::string::npos) << program.err();
   }
 }
