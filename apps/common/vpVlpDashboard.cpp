@@ -21,6 +21,19 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+//! Of the day, UTC, where the time is that of the host's clock, s since 1970.
+std::string timeText(double time)
+{
+  static const double clock = 1e8, day = 86400; // s
+  if (!(time > clock)) {
+    return vpFormat("%.3f s", time);
+  }
+  const double second = std::fmod(time, day);
+  return vpFormat("%02.0f:", std::floor(second / 3600)) +
+         vpFormat("%02.0f:", std::floor(std::fmod(second, 3600) / 60)) +
+         vpFormat("%06.3f", std::fmod(second, 60));
+}
+
 //! A line of the status: up to three cells, each at its own place.
 using Row = std::array<std::string, 3>;
 
@@ -91,7 +104,7 @@ void drawStatus(cv::Mat &picture, const vpVlpLocation &location, double compute,
 {
   const vpVlpFix &fix = location.fix;
   std::vector<Row> rows = {
-      {"t", vpFormat("%.3f s", location.timestamp), vpFormat("%.1f ms per frame", 1000 * compute)}};
+      {"t", timeText(location.timestamp), vpFormat("%.1f ms per frame", 1000 * compute)}};
   if (fix.valid) {
     addPose(rows, fix);
   } else {

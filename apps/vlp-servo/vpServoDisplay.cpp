@@ -24,11 +24,11 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! ViSP's curves of velocities and errors over time.
+//! ViSP's curves of velocities and errors over time, below the picture and the map.
 class Curves
 {
 public:
-  Curves() : m_plot(2, 700, 700, 40, 40, "vlp-servo")
+  Curves() : m_plot(2, 420, 1200, 0, 640, "vlp-servo")
   {
     m_plot.initGraph(0, 2);
     m_plot.setTitle(0, "Velocity");
