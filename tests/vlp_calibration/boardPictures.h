@@ -57,7 +57,7 @@ inline vpBoardSight sight(const vpBoard &board, const vpCameraParameters &camera
                           const vpHomogeneousMatrix &cMo, double noise, std::mt19937_64 &random,
                           const std::string &name)
 {
-  std::normal_distribution<double> normal(0, noise);
+  std::normal_distribution<double> normal;
   vpBoardSight sight;
   sight.picture = name;
   for (int row = 0; row < board.rows; ++row) {
@@ -67,8 +67,8 @@ inline vpBoardSight sight(const vpBoard &board, const vpCameraParameters &camera
       double u = 0, v = 0;
       vpMeterPixelConversion::convertPoint(camera, c[0] / c[2], c[1] / c[2], u, v);
       sight.board.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.f);
-      sight.pixels.emplace_back(static_cast<float>(u + normal(random)),
-                                static_cast<float>(v + normal(random)));
+      sight.pixels.emplace_back(static_cast<float>(u + noise * normal(random)),
+                                static_cast<float>(v + noise * normal(random)));
     }
   }
   return sight;

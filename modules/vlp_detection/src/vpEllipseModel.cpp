@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -24,7 +25,8 @@ Eigen::Matrix2d rootOf(const Eigen::Matrix2d &A)
 }
 
 /*!
-  The conic A x^2 + B x y + C y^2 + D x + E y + F = 0 of least algebraic distance, under 4 A C - B^2 = 1.
+  The conic A x^2 + B x y + C y^2 + D x + E y + F = 0 of least algebraic distance, under 4 A C - B^2 = 1, an
+  ellipse.
   Nothing where the sums say nothing of one.
   \param S1, S2, S3 Sums of products of (x^2, x y, y^2) with themselves, with (x, y, 1), and of these.
 */
@@ -36,19 +38,25 @@ std::optional<Eigen::Matrix<double, 6, 1>> ellipticConic(const Eigen::Matrix3d &
     return std::nullopt;
   }
   const Eigen::Matrix3d T = -S3.inverse() * S2.transpose();
-  const Eigen::Matrix3d M = S1 + S2 * T;
-  Eigen::Matrix3d reduced;
-  reduced << 0.5 * M.row(2), -M.row(1), 0.5 * M.row(0);
-  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(reduced);
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d a = eigen.eigenvectors().col(i).real();
-    if (4 * a(0) * a(2) - a(1) * a(1) > 0) {
-      Eigen::Matrix<double, 6, 1> conic;
-      conic << a, T * a;
-      return conic;
-    }
+  Eigen::Matrix3d M = S1 + S2 * T;
+  M.diagonal().array() += 1e-12 * M.trace(); // of points that lie on an ellipse it is singular
+  // The most of a' C a, which is 4 A C - B^2, for a given a' M a.
+  const Eigen::LLT<Eigen::Matrix3d> root(M);
+  if (root.info() != Eigen::Success) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  Eigen::Matrix3d C;
+  C << 0, 0, 2, 0, -1, 0, 2, 0, 0;
+  const Eigen::Matrix3d half = root.matrixL().solve(C);
+  const Eigen::Matrix3d scaled = root.matrixL().solve(Eigen::Matrix3d(half.transpose()));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled);
+  const Eigen::Vector3d a = root.matrixU().solve(Eigen::Vector3d(eigen.eigenvectors().col(2)));
+  if (!(eigen.eigenvalues()(2) > 0)) {
+    return std::nullopt;
+  }
+  Eigen::Matrix<double, 6, 1> conic;
+  conic << a, T * a;
+  return conic;
 }
 
 /*!
