@@ -61,25 +61,22 @@ TEST(LampSearch, SteadyRegionIsPassedOverForAWhile)
   }
 }
 
-TEST(LampSearch, LampBesideASteadyRegionIsFoundAtOnce)
+TEST(LampSearch, NewLampIsFoundBesideASteadyRegionAtOnceAndInPlaceOfOneOnceThatIsForgotten)
 {
-  const Scene scene;
-  vpLampTracker tracker = scene.tracker();
-  const std::vector<Lamp> before = with(three, steady);
-  const Lamp late = {300, 120, 4400};
-  sightings(scene, tracker, 0, 20, 0, before, steady);
-  EXPECT_GE(sightings(scene, tracker, 20, 27, 0, with(before, late), late), 1);
-  EXPECT_EQ(tracker.tracks(), 4u);
-}
-
-TEST(LampSearch, LampInPlaceOfASteadyRegionIsFoundOnceThatIsForgotten)
-{
-  const Scene scene;
-  vpLampTracker tracker = scene.tracker();
-  sightings(scene, tracker, 0, 10, 0, with(three, steady), steady);
-  const Lamp late = {steady.u, steady.v, 4400};
-  EXPECT_GE(sightings(scene, tracker, 10, 77, 0, with(three, late), late), 1);
-  EXPECT_EQ(tracker.tracks(), 4u);
+  const Lamp beside = {300, 120, 4400}, instead = {steady.u, steady.v, 4400};
+  struct Case {
+    Lamp late;
+    std::vector<Lamp> after; // all that shines then
+    int frames;              // within which it is found
+  };
+  for (const Case &each :
+       {Case{beside, with(with(three, steady), beside), 7}, Case{instead, with(three, instead), 67}}) {
+    const Scene scene;
+    vpLampTracker tracker = scene.tracker();
+    sightings(scene, tracker, 0, 10, 0, with(three, steady), steady);
+    EXPECT_GE(sightings(scene, tracker, 10, 10 + each.frames, 0, each.after, each.late), 1);
+    EXPECT_EQ(tracker.tracks(), 4u);
+  }
 }
 
 TEST(LampSearch, LampThatIsExpectedBesideASteadyRegionIsFoundAtOnce)
