@@ -80,6 +80,8 @@ TEST(VlpRig, ReadsTheLeastThatARigHas)
     }
   }
   EXPECT_EQ(rig.rotationSigma.norm(), 0);
+  EXPECT_FALSE(rig.principalPointSigma);
+  EXPECT_FALSE(rig.focalLengthSigma);
   EXPECT_EQ(rig.lineTiming().lines(), 600u);
 }
 
@@ -89,7 +91,7 @@ TEST(VlpRig, ReadsAllThatARigMayHave)
   folder.write("camera.xml", xml);
   const vpVlpRig rig = vpVlpRig::load(folder.write(
       "rig.yaml",
-      "camera: {file: camera.xml, name: UB300}\n"
+      "camera: {file: camera.xml, name: UB300, principal_point_sigma_px: 0.4, focal_length_sigma: 0.003}\n"
       "shutter: {row_time_s: 43.1e-6, row_time_sigma_s: 2e-9, exposure_s: 1e-4, readout: columns_reversed}\n"
       "resize: {method: nearest, source_size: [2048, 1536]}\n"
       "mount: {translation_m: [0.01, -0.02, 0.19], rotation_rpy_deg: [90, 0, 180],\n"
@@ -100,6 +102,8 @@ TEST(VlpRig, ReadsAllThatARigMayHave)
   EXPECT_EQ(rig.resize.sourceWidth, 2048u);
   EXPECT_EQ(rig.resize.sourceHeight, 1536u);
   EXPECT_EQ(rig.lineTiming().lines(), 800u);
+  EXPECT_EQ(rig.principalPointSigma, 0.4);
+  EXPECT_EQ(rig.focalLengthSigma, 0.003);
   EXPECT_EQ(rig.translationSigma, Eigen::Vector3d(0.001, 0.002, 0.003));
   EXPECT_TRUE(rig.rotationSigma.isApprox(Eigen::Vector3d(0.1, 0.2, 0.3) * M_PI / 180));
   // roll 90 takes y to z and z to -y, then yaw 180 turns x and y round
@@ -128,6 +132,7 @@ TEST(VlpRig, SavedAndLoadedItIsTheSame)
       rig.shutter.rowTime = 1e-5 / 3;
       rig.resize = {vpPictureResize::Method::area, 2560, 1200};
       rig.rotationSigma = Eigen::Vector3d(0.1, 0.2, 0.3) * M_PI / 180;
+      rig.focalLengthSigma = 0.001 / 3;
       rig.save(folder / "saved.yaml");
       EXPECT_EQ(folder.count(), 4u); // camera.xml, rig.yaml and the two new ones
 
@@ -145,6 +150,8 @@ TEST(VlpRig, SavedAndLoadedItIsTheSame)
       EXPECT_EQ(back.resize.sourceWidth, 2560u);
       EXPECT_EQ(back.resize.sourceHeight, 1200u);
       EXPECT_EQ(back.rotationSigma, rig.rotationSigma);
+      EXPECT_FALSE(back.principalPointSigma);
+      EXPECT_EQ(back.focalLengthSigma, rig.focalLengthSigma);
       for (unsigned int i = 0; i < 4; ++i) {
         for (unsigned int j = 0; j < 4; ++j) {
           EXPECT_NEAR(back.bMc[i][j], rig.bMc[i][j], 1e-14) << rotation;
@@ -202,6 +209,10 @@ TEST(VlpRig, BadFilesAreRefusedWithFileLineAndField)
        {":2: shutter.readout: missing, expected one of rows, rows_reversed, "}},
       {with(minimal, "readout: rows", "readout: up"),
        {":2: shutter.readout: up, expected one of rows, rows_reversed, "}},
+      {with(minimal, "UB300}", "UB300, focal_length_sigma: -1}"),
+       {":1: camera.focal_length_sigma: -1, expected"}},
+      {with(minimal, "UB300}", "UB300, principal_point_sigma_px: wide}"),
+       {":1: camera.principal_point_sigma_px: wide, expected"}},
       {with(minimal, "rows}", "rows, row_time_sigma_s: -1}"), {":2: shutter.row_time_sigma_s: -1, expected"}},
       {with(resize, "nearest", "cubic"), {":3: resize.method: cubic, expected one of nearest, area"}},
       {with(resize, "2048, 1536", "2048"), {":3: resize.source_size: a list of 1, expected 2 numbers"}},

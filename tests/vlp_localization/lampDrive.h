@@ -43,6 +43,7 @@ struct Arc {
 using Path = std::function<vpHomogeneousMatrix(double)>;
 
 //! Four lamps and a camera that looks up from a level base, and how far both are off what is claimed of them.
+//! Roll and pitch of a true pose are those of the camera.
 class Drive
 {
 public:
@@ -52,12 +53,13 @@ public:
 
   Drive(unsigned int seed, const Path &path, const Doubt &doubt = Doubt())
       : m_random(seed), m_path(path), m_doubt(doubt),
-        m_rig(lampScene::withDoubt(lampScene::rigWith(lampScene::frame(0.06, 0.02, 0.2, 0, 0, 0.4)), doubt))
+        m_rig(lampScene::withDoubt(lampScene::rigWith(lampScene::frame(0.06, 0.02, 0.2, 0, 0, 0.4)), doubt)),
+        m_lens(m_random, doubt)
   {
     const Eigen::Vector3d turn = m_random.normal3(doubt.rotationSigma),
                           shift = m_random.normal3(doubt.translationSigma);
     m_lean = lampScene::rotation({turn.x(), turn.y(), 0});
-    m_bMc = lampScene::rotation({0, 0, turn.z()}) * m_rig.bMc;
+    m_bMc = m_lean * lampScene::rotation({0, 0, turn.z()}) * m_rig.bMc;
     m_bMc.insert(vpTranslationVector(0.06 + shift.x(), 0.02 + shift.y(), 0.2 + shift.z()));
     for (size_t k = 0; k < places.size(); ++k) {
       m_hung.push_back(places[k] + m_random.normal3(Eigen::Vector3d::Constant(doubt.positionSigma)));
@@ -74,10 +76,11 @@ public:
   vpLampSight sight(size_t lamp, double t)
   {
     vpLampSight seen = lampScene::sightOf(std::string(1, static_cast<char>('A' + lamp)), m_hung[lamp],
-                                          truth(t) * m_bMc, m_doubt.raySigma);
+                                          m_path(t) * m_bMc, m_doubt.raySigma);
     seen.position = places[lamp];
     seen.positionSigma = m_doubt.positionSigma;
-    seen.ray += Eigen::Vector2d(m_random.normal(m_doubt.raySigma), m_random.normal(m_doubt.raySigma));
+    seen.ray = m_lens.seen(seen.ray) +
+               Eigen::Vector2d(m_random.normal(m_doubt.raySigma), m_random.normal(m_doubt.raySigma));
     return seen;
   }
 
@@ -86,7 +89,6 @@ public:
   {
     const vpHomogeneousMatrix off =
         lampScene::frame(m_random.normal(0.003), m_random.normal(0.003), m_random.normal(0.003), 0, 0, 0);
-    filter.principalPoint = filter.focalLength = 0; // the drive's lens is as the rig says
     filter.start(off * m_path(t) * lampScene::rotation({0, 0, m_random.normal(0.003)}), t);
   }
 
@@ -105,6 +107,7 @@ private:
   Path m_path;
   Doubt m_doubt;
   vpVlpRig m_rig;
+  lampScene::LensError m_lens;
   vpHomogeneousMatrix m_lean, m_bMc;   // as they are
   std::vector<Eigen::Vector3d> m_hung; // m, likewise
 };

@@ -137,22 +137,43 @@ inline double tiltOf(const vpHomogeneousMatrix &wMb)
 }
 
 /*!
-  A world as the rig and the map do not quite claim it: lamps off their places, camera off its mount, base
-  off the level, image points off their places, each by its stated sigma.
+  A world as the rig and the map do not quite claim it: lamps off their places, camera off its mount, its lens
+  off its calibration, image points off their places, each by its stated sigma.
 */
 struct Doubt {
   double raySigma = 3e-4;
   double positionSigma = 0;
   Eigen::Vector3d translationSigma = Eigen::Vector3d::Zero();
   Eigen::Vector3d rotationSigma = Eigen::Vector3d::Zero();
+  double principalPointSigma = 0; // normalised units
+  double focalLengthSigma = 0;    // share
+};
+
+//! How far a lens is off.
+struct LensError {
+  Eigen::Vector2d principalPoint = Eigen::Vector2d::Zero(); // normalised units
+  double focalLength = 0;                                   // share
+
+  LensError(Random &random, const Doubt &doubt)
+  {
+    if (doubt.principalPointSigma > 0) {
+      principalPoint =
+          Eigen::Vector2d(random.normal(doubt.principalPointSigma), random.normal(doubt.principalPointSigma));
+    }
+    if (doubt.focalLengthSigma > 0) {
+      focalLength = random.normal(doubt.focalLengthSigma);
+    }
+  }
+  //! Where a calibrated camera would have a ray.
+  Eigen::Vector2d seen(const Eigen::Vector2d &ray) const { return (1 + focalLength) * ray + principalPoint; }
 };
 
 struct Draw {
-  vpHomogeneousMatrix wMb; // true
+  vpHomogeneousMatrix wMb; // true, its roll and pitch those of the camera
   std::vector<vpLampSight> lamps;
 };
 
-//! \e wMb is where the base would stand were it level; \e rig and \e places are the claims.
+//! \e wMb is where the level base stands; \e rig and \e places are the claims.
 inline Draw draw(Random &random, const vpVlpRig &rig, const vpHomogeneousMatrix &wMb,
                  const std::vector<Eigen::Vector3d> &places, const Doubt &doubt)
 {
@@ -160,16 +181,18 @@ inline Draw draw(Random &random, const vpVlpRig &rig, const vpHomogeneousMatrix 
   const Eigen::Vector3d shift = random.normal3(doubt.translationSigma);
   Draw drawn;
   drawn.wMb = wMb * rotation({turn.x(), turn.y(), 0});
-  vpHomogeneousMatrix bMc = rotation({0, 0, turn.z()}) * rig.bMc;
+  vpHomogeneousMatrix bMc = rotation({turn.x(), turn.y(), 0}) * rotation({0, 0, turn.z()}) * rig.bMc;
   bMc.insert(
       vpTranslationVector(rig.bMc[0][3] + shift.x(), rig.bMc[1][3] + shift.y(), rig.bMc[2][3] + shift.z()));
-  const vpHomogeneousMatrix wMc = drawn.wMb * bMc;
+  const vpHomogeneousMatrix wMc = wMb * bMc;
+  const LensError lens(random, doubt);
   for (size_t k = 0; k < places.size(); ++k) {
     const Eigen::Vector3d place = places[k] + random.normal3(Eigen::Vector3d::Constant(doubt.positionSigma));
     vpLampSight sight = sightOf(std::string(1, static_cast<char>('A' + k)), place, wMc, doubt.raySigma);
     sight.position = places[k];
     sight.positionSigma = doubt.positionSigma;
-    sight.ray += Eigen::Vector2d(random.normal(doubt.raySigma), random.normal(doubt.raySigma));
+    sight.ray =
+        lens.seen(sight.ray) + Eigen::Vector2d(random.normal(doubt.raySigma), random.normal(doubt.raySigma));
     drawn.lamps.push_back(sight);
   }
   return drawn;
@@ -179,6 +202,8 @@ inline vpVlpRig withDoubt(vpVlpRig rig, const Doubt &doubt)
 {
   rig.translationSigma = doubt.translationSigma;
   rig.rotationSigma = doubt.rotationSigma;
+  rig.principalPointSigma = doubt.principalPointSigma * rig.camera.get_px();
+  rig.focalLengthSigma = doubt.focalLengthSigma;
   return rig;
 }
 

@@ -95,7 +95,10 @@ void expectConsistent(unsigned int seed, const Doubt &doubt, int degreesOfFreedo
     const std::vector<Eigen::Vector3d> places = lampsAround(random, wMb, 5);
     if (!allInFront(places, wMb * rig.bMc))
       continue;
-    const Draw drawn = draw(random, rig, wMb, places, doubt);
+    const Eigen::Vector3d turn = random.normal3(doubt.rotationSigma); // of base and camera as one
+    Doubt others = doubt;
+    others.rotationSigma.head<2>().setZero();
+    const Draw drawn = draw(random, rig, wMb * rotation({turn.x(), turn.y(), 0}), places, others);
     const vpVlpFix fix = freeSolver().solve(drawn.lamps, rig);
     ASSERT_TRUE(fix.valid) << fix.refusal;
     ambiguous += fix.ambiguous;

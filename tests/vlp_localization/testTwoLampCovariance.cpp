@@ -108,10 +108,10 @@ TEST(TwoLampCovariance, TiltOfTheMountMovesTheBaseByTheHeight)
     const vpVlpFix fix = vpTwoLampSolver().solve(sightOf("A", {-0.2, 0.01, 2}, wMb * rig.bMc, 1e-9),
                                                  sightOf("B", {0.2, -0.01, 2}, wMb * rig.bMc, 1e-9), rig);
     ASSERT_TRUE(fix.valid) << fix.refusal;
-    // Of the robot: a pitch moves it along its x, a roll along its y, by lamp height times angle.
+    // Of the robot: a pitch moves it along its x, a roll along its y, by angle times height above the camera.
     const int x = yaw == 0 ? 0 : 1, y = 1 - x;
-    EXPECT_NEAR(std::sqrt(fix.covariance(x, x)), 2 * 0.005, 2e-4);
-    EXPECT_NEAR(std::sqrt(fix.covariance(y, y)), 2 * 0.002, 2e-4);
+    EXPECT_NEAR(std::sqrt(fix.covariance(x, x)), 1.7 * 0.005, 2e-4);
+    EXPECT_NEAR(std::sqrt(fix.covariance(y, y)), 1.7 * 0.002, 2e-4);
     EXPECT_NEAR(fix.covariance(3 + x, 3 + x), 0.002 * 0.002, 1e-12);
     EXPECT_NEAR(fix.covariance(3 + y, 3 + y), 0.005 * 0.005, 1e-12);
     const double correlation =
@@ -153,7 +153,12 @@ TEST(TwoLampCovariance, ConsistentWithTiltOfTheMount)
   expectConsistent(24, {3e-4, 0, {0, 0, 0}, {0.002, 0.004, 0}}, 6);
 }
 
+TEST(TwoLampCovariance, ConsistentWithTheLens)
+{
+  expectConsistent(26, {3e-4, 0, {0, 0, 0}, {0, 0, 0}, 0.003, 0.005}, 4);
+}
+
 TEST(TwoLampCovariance, ConsistentWithAllDoubtAtOnce)
 {
-  expectConsistent(25, {5e-4, 0.003, {0.002, 0.004, 0.003}, {0.003, 0.005, 0.006}}, 6);
+  expectConsistent(25, {5e-4, 0.003, {0.002, 0.004, 0.003}, {0.003, 0.005, 0.006}, 0.002, 0.004}, 6);
 }

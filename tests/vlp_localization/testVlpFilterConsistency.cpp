@@ -103,6 +103,8 @@ const Doubt claimed = [] {
   doubt.positionSigma = 0.005;
   doubt.translationSigma.setConstant(0.002);
   doubt.rotationSigma = {0.004, 0.004, 0.003};
+  doubt.principalPointSigma = 0.002;
+  doubt.focalLengthSigma = 0.003;
   return doubt;
 }();
 } // namespace

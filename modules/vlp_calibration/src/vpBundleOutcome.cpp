@@ -128,6 +128,13 @@ vpBundleResult vpBundleProblem::result()
     }
   }
 
+  if (m_bundle.rigSigma.segment<2>(6).maxCoeff() > 0) {
+    result.rig.principalPointSigma = sigma.segment<2>(6).maxCoeff();
+  }
+  if (m_bundle.rigSigma(8) > 0) {
+    result.rig.focalLengthSigma = sigma(8);
+  }
+
   result.map = m_priorMap;
   result.lampCovariance.assign(m_lamps.size(), Eigen::Matrix3d::Zero());
   result.lampImages.assign(m_lamps.size(), 0);

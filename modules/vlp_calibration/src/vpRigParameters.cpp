@@ -83,6 +83,8 @@ vpRigVector vpStatedSigma(const vpVlpRig &rig)
   vpRigVector sigma = vpRigVector::Zero();
   sigma.head<3>() = rig.translationSigma;
   sigma.segment<3>(3) = rig.rotationSigma;
+  sigma.segment<2>(6).setConstant(rig.principalPointSigma.value_or(0));
+  sigma(8) = rig.focalLengthSigma.value_or(0);
   return sigma;
 }
 

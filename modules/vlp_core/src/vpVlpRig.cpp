@@ -34,6 +34,12 @@ void readCamera(const vpYamlNode &node, vpVlpRig &rig)
 {
   rig.cameraFile = node.text("file");
   rig.cameraName = node.text("name");
+  if (node.has("principal_point_sigma_px")) {
+    rig.principalPointSigma = node.number("principal_point_sigma_px", Range::notNegative);
+  }
+  if (node.has("focal_length_sigma")) {
+    rig.focalLengthSigma = node.number("focal_length_sigma", Range::notNegative);
+  }
   node.finish();
   vpCameraXml entry;
   try {
@@ -126,7 +132,14 @@ std::string rigText(const vpVlpRig &rig)
 {
   const vpRollingShutter &shutter = rig.shutter;
   std::string text = "camera: {file: " + vpYamlNode::quoted(rig.cameraFile) +
-                     ", name: " + vpYamlNode::quoted(rig.cameraName) + "}\n";
+                     ", name: " + vpYamlNode::quoted(rig.cameraName);
+  if (rig.principalPointSigma) {
+    text += ", principal_point_sigma_px: " + vpNumberText(*rig.principalPointSigma);
+  }
+  if (rig.focalLengthSigma) {
+    text += ", focal_length_sigma: " + vpNumberText(*rig.focalLengthSigma);
+  }
+  text += "}\n";
   text += "shutter: {row_time_s: " + vpNumberText(shutter.rowTime) +
           ", row_time_sigma_s: " + vpNumberText(shutter.rowTimeSigma) +
           ", exposure_s: " + vpNumberText(shutter.exposure) +

@@ -73,7 +73,9 @@ vpBasePose vpBasePose::of(const vpHomogeneousMatrix &wMb)
 }
 
 vpMountFrame::vpMountFrame(const vpVlpRig &rig)
-    : translationSigma(rig.translationSigma), rotationSigma(rig.rotationSigma)
+    : translationSigma(rig.translationSigma), rotationSigma(rig.rotationSigma),
+      principalPointSigma(rig.principalPointSigma.value_or(0) / rig.camera.get_px()),
+      focalLengthSigma(rig.focalLengthSigma.value_or(0))
 {
   fromVisp(rig.bMc, bRc, btc);
 }
@@ -105,6 +107,23 @@ Eigen::Matrix2d tiltDoubt(const vpBasePose &pose, const vpMountFrame &mount)
 {
   const Eigen::Matrix2d turn = pose.wRb.topLeftCorner<2, 2>();
   return turn * mount.rotationSigma.head<2>().cwiseAbs2().asDiagonal() * turn.transpose();
+}
+
+Eigen::MatrixXd byCameraTilt(const Eigen::Matrix<double, Eigen::Dynamic, 6> &byBase, const vpBasePose &pose,
+                             const vpMountFrame &mount)
+{
+  // The base turns about its origin, which carries the camera along; that way is taken back.
+  return byBase.middleCols<2>(3) + byBase.leftCols<3>() * cross(pose.wRb * mount.btc).leftCols<2>();
+}
+
+Eigen::MatrixXd lensDoubt(const Eigen::VectorXd &rays, const vpMountFrame &mount)
+{
+  Eigen::MatrixXd byPoint(rays.size(), 2);
+  for (Eigen::Index row = 0; row < rays.size(); row += 2) {
+    byPoint.middleRows<2>(row).setIdentity();
+  }
+  return mount.principalPointSigma * mount.principalPointSigma * byPoint * byPoint.transpose() +
+         mount.focalLengthSigma * mount.focalLengthSigma * rays * rays.transpose();
 }
 
 vpMatrix6d mountDoubt(const vpBasePose &pose, const vpMountFrame &mount)

@@ -40,7 +40,7 @@ struct vpBasePose {
   static vpBasePose of(const vpHomogeneousMatrix &wMb);
 };
 
-//! The mount of a rig in Eigen's terms.
+//! The mount of a rig, and what its lens may be off by, in Eigen's terms.
 struct vpMountFrame {
   explicit vpMountFrame(const vpVlpRig &rig);
 
@@ -48,8 +48,11 @@ struct vpMountFrame {
   Eigen::Vector3d btc;              // m
   Eigen::Vector3d translationSigma; // m
   Eigen::Vector3d rotationSigma;    // rad
+  double principalPointSigma;       // normalised units; 0 where the rig states none
+  double focalLengthSigma;          // share, likewise
 
   bool tiltStated() const { return rotationSigma.x() > 0 || rotationSigma.y() > 0; }
+  bool lensStated() const { return principalPointSigma > 0 || focalLengthSigma > 0; }
 };
 
 /*!
@@ -69,9 +72,18 @@ vpPredictedRay predictRay(const Eigen::Vector3d &lamp, const vpBasePose &pose, c
 //! above.
 Eigen::Matrix2d rayDoubt(const vpLampSight &lamp, const vpPredictedRay &predicted);
 
-//! Covariance of the tilt of a level base about x and y of w, rad^2: the rig's roll and pitch sigma turned
-//! by the yaw.
+//! Covariance of the camera's tilt on a level base about x and y of w, rad^2: the rig's roll and pitch sigma
+//! turned by the yaw.
 Eigen::Matrix2d tiltDoubt(const vpBasePose &pose, const vpMountFrame &mount);
+
+//! Derivative of rays by that tilt, about the camera's own centre. \param byBase By the base, 2n x 6, columns
+//! as of vpPredictedRay. \return 2n x 2.
+Eigen::MatrixXd byCameraTilt(const Eigen::Matrix<double, Eigen::Dynamic, 6> &byBase, const vpBasePose &pose,
+                             const vpMountFrame &mount);
+
+//! Covariance of rays by the errors of principal point and focal length, which all share. \param rays 2n.
+//! \return 2n x 2n.
+Eigen::MatrixXd lensDoubt(const Eigen::VectorXd &rays, const vpMountFrame &mount);
 
 /*!
   What the mount's translation and yaw add to the covariance of wMb = wMc bMc^-1: an error e of its yaw
@@ -84,9 +96,9 @@ vpMatrix6d mountDoubt(const vpBasePose &pose, const vpMountFrame &mount);
   Covariance of wMb, without mountDoubt(), where roll and pitch were taken as level and x, y, z, yaw
   estimated.
 
-  Implicit differentiation at the solution p = (x, y, z, yaw). With an error n of the rays, dP of the lamps'
-  positions and a true tilt d (about x and y of w) of the base that is taken as level, the rays are
-  h(p, P, d), and to first order
+  Implicit differentiation at the solution p = (x, y, z, yaw). With an error n of the rays, the lens's
+  included, dP of the lamps' positions and a true tilt d (about x and y of w) of the camera that is taken as
+  upright, the rays are h(p, P, d), and to first order
 
     true p - p = K (-n - (dh/dP) dP - (dh/dtilt) d),
 

@@ -11,7 +11,7 @@ BEGIN_VISP_NAMESPACE
 
 vpRayFit::vpRayFit(const std::vector<vpLampSight> &lamps, const vpMountFrame &mount, Kind kind)
     : m_lamps(lamps), m_mount(mount), m_tiltInDoubt(kind == Kind::level), m_six(kind == Kind::free),
-      m_fixedDoubt(!m_tiltInDoubt || !mount.tiltStated())
+      m_fixedDoubt((!m_tiltInDoubt || !mount.tiltStated()) && !mount.lensStated())
 {
   for (const vpLampSight &lamp : lamps)
     m_fixedDoubt = m_fixedDoubt && lamp.positionSigma == 0;
@@ -46,10 +46,18 @@ vpRayFit::Linear vpRayFit::linearise(const vpBasePose &pose, bool withDoubt) con
     if (withDoubt)
       linear.doubt.block<2, 2>(2 * k, 2 * k) = rayDoubt(m_lamps[k], predicted);
   }
+  if (withDoubt && m_mount.lensStated()) {
+    const Eigen::Index rows = 2 * static_cast<Eigen::Index>(m_lamps.size());
+    Eigen::VectorXd rays(rows);
+    for (size_t k = 0; k < m_lamps.size(); ++k) {
+      rays.segment<2>(2 * k) = m_lamps[k].ray;
+    }
+    linear.doubt.topLeftCorner(rows, rows) += lensDoubt(rays, m_mount);
+  }
   if (!m_tiltInDoubt)
     addTiltPrior(linear, pose);
   else if (withDoubt && m_mount.tiltStated()) {
-    const Eigen::Matrix<double, Eigen::Dynamic, 2> byTilt = linear.byBase.middleCols<2>(3);
+    const Eigen::MatrixXd byTilt = byCameraTilt(linear.byBase, pose, m_mount);
     linear.doubt += byTilt * tiltDoubt(pose, m_mount) * byTilt.transpose();
   }
   return linear;
@@ -171,8 +179,8 @@ bool vpRayFit::covariance(const vpBasePose &pose, vpMatrix6d &covariance) const
   if (m_six)
     covariance = (inverse + inverse.transpose()) / 2;
   else
-    covariance = levelCovariance(inverse * weighted.transpose(), linear.doubt, linear.byBase.middleCols<2>(3),
-                                 tiltDoubt(pose, m_mount));
+    covariance = levelCovariance(inverse * weighted.transpose(), linear.doubt,
+                                 byCameraTilt(linear.byBase, pose, m_mount), tiltDoubt(pose, m_mount));
   return covariance.allFinite();
 }
 

@@ -21,10 +21,11 @@ BEGIN_VISP_NAMESPACE
   Residuals are the rays measured minus predicted, stacked as r, with the covariance S of all that the
   estimate does not answer for; r^T S^-1 r is minimised.
   - Level (attitude of the mount): x, y, z, yaw are estimated. S holds the image points, the lamps'
-    positions and the rig's roll and pitch sigma, which tilts all rays together and so ties them to each
-    other.
-  - Free: all six are estimated. S holds image points and lamps' positions. Where the rig states a roll or
-    pitch sigma, that angle's sine (a horizontal component of the base's up direction) is one more residual.
+    positions, the rig's roll and pitch sigma, which tilts all rays together and so ties them to each other,
+    and its lens's.
+  - Free: all six are estimated. S holds image points, lamps' positions and lens. Where the rig states a roll
+  or pitch sigma, that angle's sine (a horizontal component of the base's up direction) is one more residual:
+    base and camera lean as one.
   - Free, tilt held: the same sum, minimised over x, y, z, yaw with the tilt of the start: a point of its
     profile.
   To first order level and free weigh the rig's sigma alike, and their minima follow the same chi-square

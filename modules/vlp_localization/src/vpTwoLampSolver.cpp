@@ -69,13 +69,15 @@ std::string pairProblem(const vpLampSight &first, const vpLampSight &second, con
 bool pairCovariance(const std::vector<vpLampSight> &lamps, const vpBasePose &pose, const vpMountFrame &mount,
                     vpMatrix6d &covariance)
 {
-  Eigen::Matrix<double, 4, 6> byBase;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> byBase(4, 6);
+  Eigen::VectorXd rays(4);
   Eigen::Matrix4d S = Eigen::Matrix4d::Zero();
   for (int k = 0; k < 2; ++k) {
     const vpPredictedRay predicted = predictRay(lamps[k].position, pose, mount);
     if (!predicted.inFront)
       return false;
     byBase.middleRows<2>(2 * k) = predicted.derivative;
+    rays.segment<2>(2 * k) = predicted.ray;
     S.block<2, 2>(2 * k, 2 * k) = rayDoubt(lamps[k], predicted);
   }
   Eigen::Matrix4d J;
@@ -84,8 +86,8 @@ bool pairCovariance(const std::vector<vpLampSight> &lamps, const vpBasePose &pos
   if (!(lu.rcond() > 1e-12))
     return false;
   const Eigen::Matrix2d tilt = tiltDoubt(pose, mount);
-  const Eigen::Matrix<double, 4, 2> byTilt = byBase.middleCols<2>(3);
-  S += byTilt * tilt * byTilt.transpose();
+  const Eigen::MatrixXd byTilt = byCameraTilt(byBase, pose, mount);
+  S += byTilt * tilt * byTilt.transpose() + lensDoubt(rays, mount);
   covariance = levelCovariance(lu.inverse(), S, byTilt, tilt);
   return covariance.allFinite();
 }

@@ -45,6 +45,12 @@ vpBasePose poseOf(const Eigen::VectorXd &state)
   return pose;
 }
 
+//! From a base that stands level to the camera, in w, m.
+Eigen::Vector3d levelArm(const Eigen::VectorXd &state, const Eigen::Vector3d &btc)
+{
+  return Eigen::AngleAxisd(state(3), Eigen::Vector3d::UnitZ()) * btc;
+}
+
 //! Rotations about the fixed axes of w by changes of yaw, roll and pitch, in the state's order.
 Eigen::Matrix3d rotationByAngles(const Eigen::VectorXd &state)
 {
@@ -101,9 +107,10 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   sigma(turnBias) = odometryTurnBias;
   sigma.segment<3>(mount) = m_rig.translationSigma;
   sigma(mount + 3) = m_rig.rotationSigma.z();
-  if (m_tiltDoubt > 0 || m_rig.rotationSigma.norm() > 0 || m_rig.translationSigma.norm() > 0) {
-    sigma.segment<3>(lens) << principalPoint, principalPoint, focalLength;
-  }
+  const bool claims = m_tiltDoubt == 0 && m_rig.rotationSigma.isZero(0) && m_rig.translationSigma.isZero(0);
+  const double point = m_rig.principalPointSigma ? *m_rig.principalPointSigma / m_rig.camera.get_px()
+                                                 : (claims ? 0 : principalPoint);
+  sigma.segment<3>(lens) << point, point, m_rig.focalLengthSigma.value_or(claims ? 0 : focalLength);
   m_P = sigma.cwiseAbs2().asDiagonal();
   static const double steady =
       0.1; // its first two frames tell whether camera and map are as good as they say
@@ -162,12 +169,16 @@ void vpVlpFilter::forgetVelocity()
 bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
 {
   static const double chance = 2, beyond = 6; // standard deviations of a chi-square
-  static const double calming = 0.5, rousing = 3;
   const double excess = (chiSquare - degreesOfFreedom) / std::sqrt(2.0 * std::max(1, degreesOfFreedom));
+  static const double rousing = 3;
+  static const double believed = 0.3; // degrees of freedom, that what was thought before weighs as much as
+  const double matched = std::sqrt((believed + m_moved) / (believed + m_movable));
+  m_moved = m_movable = 0;
   // One lamp does not show whether the robot turns about it.
-  static const double alone = 0.03;
-  const double least = degreesOfFreedom > 2 ? calmest : alone;
-  m_unrest = std::clamp(m_unrest * (excess > chance ? rousing : calming), least, 1.0);
+  static const double alone = 0.03, aloneCalming = 0.5;
+  const bool many = degreesOfFreedom > 2;
+  const double calming = many ? matched : std::min(matched, aloneCalming);
+  m_unrest = std::clamp(m_unrest * (excess > chance ? rousing : calming), many ? calmest : alone, 1.0);
   return excess < beyond;
 }
 
@@ -176,6 +187,7 @@ void vpVlpFilter::mark(double time)
   if (!m_started) {
     return;
   }
+  m_moved = m_movable = 0;
   advance(time);
   m_markTime = m_time;
   m_x.segment<6>(mark0) = m_x.head<6>();
@@ -201,32 +213,42 @@ void vpVlpFilter::addLamp(const vpLampSight &lamp)
 
 vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
 {
-  const vpBasePose pose = poseOf(m_x);
+  vpBasePose pose = poseOf(m_x);
   vpMountFrame frame(m_rig);
   frame.btc += m_x.segment<3>(mount);
   frame.bRc = Eigen::AngleAxisd(m_x(mount + 3), Eigen::Vector3d::UnitZ()) * frame.bRc;
   const Eigen::Index own = lampIndex(lamp);
   const Eigen::Vector3d place = own < 0 ? lamp.position : lamp.position + m_x.segment<3>(own);
+  const Eigen::Vector3d rigidArm = pose.wRb * frame.btc,
+                        arm = freeAttitude ? rigidArm : levelArm(m_x, frame.btc);
+  pose.wtb += arm - rigidArm;
   const vpPredictedRay ray = predictRay(place, pose, frame);
   Predicted predicted;
   predicted.inFront = ray.inFront;
   if (!ray.inFront) {
     return predicted;
   }
-  const Eigen::Vector3d camera = pose.wtb + pose.wRb * frame.btc;
+  const Eigen::Vector3d camera = pose.wtb + rigidArm;
   predicted.depth = (pose.wRb * frame.bRc).col(2).dot(place - camera);
   predicted.ray = (1 + m_x(lens + 2)) * ray.ray + m_x.segment<2>(lens);
   predicted.Ht.setZero(m_x.size(), 2);
   const Eigen::Matrix<double, 2, 3> byPlace = ray.derivative.leftCols<3>(),
                                     byTurn = ray.derivative.rightCols<3>();
   predicted.Ht.middleRows<3>(x) = byPlace.transpose();
-  predicted.Ht.middleRows<3>(yaw) = (byTurn * rotationByAngles(m_x)).transpose();
+  const Eigen::Matrix3d byAngles = rotationByAngles(m_x);
+  predicted.Ht.middleRows<3>(yaw) = (byTurn * byAngles).transpose();
+  if (!freeAttitude) { // yaw carries the camera along on its level arm, roll and pitch leave it where it is
+    const Eigen::Vector3d arms[] = {arm - rigidArm, -rigidArm, -rigidArm};
+    for (int k = 0; k < 3; ++k) {
+      predicted.Ht.row(yaw + k) += (byPlace * byAngles.col(k).cross(arms[k])).transpose();
+    }
+  }
   predicted.Ht.middleRows<3>(mount) = (byPlace * pose.wRb).transpose();
   predicted.Ht.middleRows<2>(lens).setIdentity();
   predicted.Ht.row(lens + 2) = ray.ray.transpose();
   // The camera turns about z of b and stays where it is.
   const Eigen::Vector3d axis = pose.wRb.col(2);
-  predicted.Ht.row(mount + 3) = (byTurn * axis - byPlace * axis.cross(pose.wRb * frame.btc)).transpose();
+  predicted.Ht.row(mount + 3) = (byTurn * axis - byPlace * axis.cross(rigidArm)).transpose();
   if (own >= 0) {
     predicted.Ht.middleRows<3>(own) = -byPlace.transpose();
   } else {
@@ -263,6 +285,7 @@ void vpVlpFilter::update(const vpLampSight &lamp)
   weighNoise(lamp);
   const Predicted predicted = predict(lamp);
   if (predicted.inFront) {
+    weighMotion(lamp);
     measure<2>(predicted.Ht, lamp.ray - predicted.ray, m_noise * lamp.covariance);
   }
 }
@@ -284,6 +307,17 @@ void vpVlpFilter::weighNoise(const vpLampSight &lamp)
   const double excess = 0.5 * std::min(seen.distance(0), outlying) - 1;
   const double gain = std::max(slowest, 1 / (believed + ++m_weighed));
   m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
+}
+
+//! What the motion since the frame before may explain of a lamp's innovation, and what it has to.
+void vpVlpFilter::weighMotion(const vpLampSight &lamp)
+{
+  static const double outlying = 4; // times what was to be expected
+  const Innovation seen = innovation(lamp);
+  const Eigen::Matrix2d inverse = seen.covariance.inverse(),
+                        share = Eigen::Matrix2d::Identity() - inverse * m_noise * lamp.covariance;
+  m_movable += share.trace();
+  m_moved += std::min((share * inverse * seen.ray).dot(seen.ray), outlying * share.trace());
 }
 
 template <int Rows>
@@ -343,6 +377,10 @@ vpVlpFix vpVlpFilter::fixOf(Index first) const
   const Vector state = m_x.segment<6>(first);
   fix.wMb = poseOf(state).wMb();
   fix.wMc = fix.wMb * m_rig.bMc;
+  if (!freeAttitude) {
+    const Eigen::Vector3d camera = state.head<3>() + levelArm(state, vpMountFrame(m_rig).btc);
+    fix.wMc.insert(vpTranslationVector(camera.x(), camera.y(), camera.z()));
+  }
   const Eigen::Matrix3d byAngles = rotationByAngles(state);
   const auto P = m_P.block<6, 6>(first, first);
   fix.covariance.topLeftCorner<3, 3>() = P.topLeftCorner<3, 3>();

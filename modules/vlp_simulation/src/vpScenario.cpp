@@ -240,15 +240,13 @@ void vpScenario::useTypicalRig()
   draw.focalLength = 0.003;
   draw.rowTime = 0.0005;
 
-  const vpCameraParameters sensor = rig.resize.sensor(rig.camera, rig.width, rig.height);
-  const double lean = std::hypot(draw.tilt, draw.principalPoint / sensor.get_px());
-  double height = 0; // m, of the lamps above the camera
   for (vpLamp &lamp : map.lamps) {
     lamp.positionSigma = draw.lampShift;
-    height += (lamp.position.z() - rig.bMc[2][3]) / static_cast<double>(map.lamps.size());
   }
-  rig.rotationSigma = Eigen::Vector3d(lean, lean, 0);
-  rig.translationSigma = Eigen::Vector3d(0, 0, draw.focalLength * height);
+  rig.rotationSigma = Eigen::Vector3d(draw.tilt, draw.tilt, 0);
+  const vpCameraParameters sensor = rig.resize.sensor(rig.camera, rig.width, rig.height);
+  rig.principalPointSigma = draw.principalPoint * rig.camera.get_px() / sensor.get_px();
+  rig.focalLengthSigma = draw.focalLength;
   rig.shutter.rowTimeSigma = draw.rowTime * rig.shutter.rowTime;
 }
 

@@ -48,8 +48,7 @@ VISP_EXPORT vpVlpRig vpMovedRig(const vpVlpRig &rig, const vpRigVector &step);
 VISP_EXPORT vpRigVector vpRigStep(const vpVlpRig &from, const vpVlpRig &to);
 
 /*!
-  What the rig's file says of its own doubt, as standard deviations of a step: its mount's. A rig says nothing
-  of its camera: u0, v0 and focal are 0.
+  What the rig's file says of its own doubt, as standard deviations of a step: 0 where it says nothing.
 */
 VISP_EXPORT vpRigVector vpStatedSigma(const vpVlpRig &rig);
 

@@ -5,6 +5,7 @@
 #ifndef vpVlpRig_h
 #define vpVlpRig_h
 
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -27,11 +28,11 @@ struct VISP_EXPORT vpVlpRig {
   vpPictureResize resize;
   vpHomogeneousMatrix bMc;                                    // camera in the robot base frame
   Eigen::Vector3d translationSigma = Eigen::Vector3d::Zero(); // m
-  /*!
-    rad, standard deviations: x and y of how far the robot, base and camera rigid together, leans from the
-    vertical about the axes x and y of b; z of the camera's heading on the base.
-  */
+  //! rad, standard deviations about the axes x, y and z of b, of a camera that is turned about its own
+  //! centre.
   Eigen::Vector3d rotationSigma = Eigen::Vector3d::Zero();
+  std::optional<double> principalPointSigma; // px of the picture as delivered, of u0 and of v0
+  std::optional<double> focalLengthSigma;    // share
 
   vpLineTiming lineTiming() const { return vpLineTiming(shutter, resize, width, height); }
 

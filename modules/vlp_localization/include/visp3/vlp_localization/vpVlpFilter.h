@@ -22,13 +22,15 @@ BEGIN_VISP_NAMESPACE
 
   The state, with its covariance:
   - the pose: x, y, z, yaw, and roll and pitch about x and y of b. The last two are constants of the rig, as
-    uncertain as its rotationSigma says (known where that is 0), unless the attitude is free;
+    uncertain as its rotationSigma says (known where that is 0): the base stands level and the camera leans
+    about its own centre. Where the attitude is free both lean as one, and change;
   - the velocity of the base along x and y of b and its turn rate, constant but for random accelerations;
   - the odometry's errors: scales of speed and turn rate, bias of the turn rate;
   - what the rig's mount and the map's lamps may be off by, where they state a standard deviation, and with
-    the mount's principal point and focal length, for which a rig has none. These errors are the same in every
-    frame, and no averaging over frames takes them away: they are considered, not estimated (Schmidt 1966), so
-    that the covariance stays honest. Roll and pitch are estimated, as far as a turning robot shows them.
+    the mount's principal point and focal length, assumed where the rig does not state them. These errors are
+  the same in every frame, and no averaging over frames takes them away: they are considered, not estimated
+  (Schmidt 1966), so that the covariance stays honest. Roll and pitch are estimated, as far as a turning robot
+  shows them.
 
   The measurement is that of the solvers: ray = projection of bRc^T (wRb^T (P - wtb) - btc).
 
@@ -77,9 +79,9 @@ public:
   double odometryTurnScale = 0.01; // of the turn rate's scale
   double odometryTurnBias = 0.002; // rad/s, of the turn rate's bias
   double sidewaysSpeed = 0.002;    // m/s, standard deviation of the speed sideways, where there is odometry
-  double principalPoint =
-      0.001;                  // normalised units, standard deviation, of a rig that states any for its mount
-  double focalLength = 0.003; // share, likewise
+  double principalPoint = 0.001;   // normalised units, standard deviation, of a rig that states one for its
+                                   // mount and none for its lens
+  double focalLength = 0.003;      // share, likewise
   double claimedTilt =
       0.004; // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
   double claimedPlace = 0.002; // m, likewise to each coordinate of each lamp
@@ -125,9 +127,9 @@ public:
 
   /*!
     How restless the robot is, by the innovations of a frame: their Mahalanobis distances squared and degrees
-    of freedom in all. Where they are as small as expected random accelerations calm down; where they are not,
-    they rise again (covariance matching, Mehra 1972). \return False where they are beyond chance: the frame
-    had better be taken once more, after rouse().
+    of freedom in all. Random accelerations become what explains that part of the innovations since mark()
+    that is motion's (covariance matching, Mehra 1972), and rise fast where all of them are more than chance.
+    \return False where they are beyond chance: the frame had better be taken once more, after rouse().
   */
   bool settle(double chiSquare, int degreesOfFreedom);
   //! The robot may start, stop or turn at any time.
@@ -195,6 +197,7 @@ private:
   double placeSigma(const vpLampSight &lamp) const { return std::hypot(lamp.positionSigma, m_placeDoubt); }
   void addLamp(const vpLampSight &lamp);
   void weighNoise(const vpLampSight &lamp);
+  void weighMotion(const vpLampSight &lamp);
   vpVlpFix fixOf(Index first) const;
   /*!
     \param Ht n x Rows, transpose of the innovation's derivative by the state of n. \param R Rows x Rows,
@@ -221,7 +224,9 @@ private:
   double m_noise = 1;                // variance of the lamps' points, as a share of the stated one
   int m_weighed = 0;                 // points that it rests on
   double m_unrest = 1;               // share of the random accelerations
-  double m_followed = -1e300;        // s, end of the interval whose odometry the velocity is
+  double m_movable = 0;       // degrees of freedom, since the mark, of innovations that motion may explain
+  double m_moved = 0;         // their Mahalanobis distances squared
+  double m_followed = -1e300; // s, end of the interval whose odometry the velocity is
 };
 
 END_VISP_NAMESPACE

@@ -78,8 +78,7 @@ struct VISP_EXPORT vpScenario {
     Draws the errors of a typical rig in place of the scenario's own: standard deviations of 0.15 degree of
     roll and of pitch, 2 mm of each lamp's x, y and z, 1 px of the sensor's principal point, 0.3 % of the
     focal length, 0.05 % of the row time. The robot knows how good its files are, not by how much they err:
-    rig and map state these standard deviations. A rig file has none for principal point and focal length;
-    they go into the lean and the camera's height.
+    rig and map state these standard deviations.
   */
   void useTypicalRig();
 
