@@ -166,22 +166,6 @@ void vpVlpFilter::forgetVelocity()
   }
 }
 
-bool vpVlpFilter::settle(double chiSquare, int degreesOfFreedom)
-{
-  static const double chance = 2, beyond = 6; // standard deviations of a chi-square
-  const double excess = (chiSquare - degreesOfFreedom) / std::sqrt(2.0 * std::max(1, degreesOfFreedom));
-  static const double rousing = 3;
-  static const double believed = 0.3; // degrees of freedom, that what was thought before weighs as much as
-  const double matched = std::sqrt((believed + m_moved) / (believed + m_movable));
-  m_moved = m_movable = 0;
-  // One lamp does not show whether the robot turns about it.
-  static const double alone = 0.03, aloneCalming = 0.5;
-  const bool many = degreesOfFreedom > 2;
-  const double calming = many ? matched : std::min(matched, aloneCalming);
-  m_unrest = std::clamp(m_unrest * (excess > chance ? rousing : calming), many ? calmest : alone, 1.0);
-  return excess < beyond;
-}
-
 void vpVlpFilter::mark(double time)
 {
   if (!m_started) {
@@ -259,11 +243,12 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
 
 vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp) const
 {
+  return m_started ? innovation(lamp, predict(lamp)) : Innovation();
+}
+
+vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp, const Predicted &predicted) const
+{
   Innovation innovation;
-  if (!m_started) {
-    return innovation;
-  }
-  const Predicted predicted = predict(lamp);
   innovation.inFront = predicted.inFront;
   if (predicted.inFront) {
     innovation.ray = lamp.ray - predicted.ray;
@@ -282,42 +267,13 @@ void vpVlpFilter::update(const vpLampSight &lamp)
   if (placeSigma(lamp) > 0 && lampIndex(lamp) < 0) {
     addLamp(lamp);
   }
-  weighNoise(lamp);
   const Predicted predicted = predict(lamp);
   if (predicted.inFront) {
-    weighMotion(lamp);
+    const Innovation seen = innovation(lamp, predicted);
+    weighMotion(seen, lamp.covariance);
+    weighNoise(seen, lamp.covariance);
     measure<2>(predicted.Ht, lamp.ray - predicted.ray, m_noise * lamp.covariance);
   }
-}
-
-/*!
-  What lamps' points scatter by, as a share of what they say: by the innovations of a calm robot, whose pose
-  rests on such points and is as good as they were (covariance matching, Mehra 1972).
-*/
-void vpVlpFilter::weighNoise(const vpLampSight &lamp)
-{
-  static const double calm = 0.03, noisy = 0.3; // share of the accelerations; of an innovation's variance
-  static const double believed = 10; // points, that what the first of them scatter by weighs as much as
-  static const double slowest = 0.02, outlying = 9, least = 0.25, most = 9;
-  const Innovation seen = innovation(lamp);
-  if (!seen.inFront || m_unrest > calm ||
-      m_noise * lamp.covariance.trace() < noisy * seen.covariance.trace()) {
-    return;
-  }
-  const double excess = 0.5 * std::min(seen.distance(0), outlying) - 1;
-  const double gain = std::max(slowest, 1 / (believed + ++m_weighed));
-  m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
-}
-
-//! What the motion since the frame before may explain of a lamp's innovation, and what it has to.
-void vpVlpFilter::weighMotion(const vpLampSight &lamp)
-{
-  static const double outlying = 4; // times what was to be expected
-  const Innovation seen = innovation(lamp);
-  const Eigen::Matrix2d inverse = seen.covariance.inverse(),
-                        share = Eigen::Matrix2d::Identity() - inverse * m_noise * lamp.covariance;
-  m_movable += share.trace();
-  m_moved += std::min((share * inverse * seen.ray).dot(seen.ray), outlying * share.trace());
 }
 
 template <int Rows>

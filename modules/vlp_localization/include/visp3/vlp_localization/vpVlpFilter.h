@@ -27,10 +27,10 @@ BEGIN_VISP_NAMESPACE
   - the velocity of the base along x and y of b and its turn rate, constant but for random accelerations;
   - the odometry's errors: scales of speed and turn rate, bias of the turn rate;
   - what the rig's mount and the map's lamps may be off by, where they state a standard deviation, and with
-    the mount's principal point and focal length, assumed where the rig does not state them. These errors are
-  the same in every frame, and no averaging over frames takes them away: they are considered, not estimated
-  (Schmidt 1966), so that the covariance stays honest. Roll and pitch are estimated, as far as a turning robot
-  shows them.
+    the mount's principal point and focal length, assumed where the rig does not state them. These errors
+    are the same in every frame, and no averaging over frames takes them away: they are considered, not
+    estimated (Schmidt 1966), so that the covariance stays honest. Roll and pitch are estimated, as far as a
+    turning robot shows them.
 
   The measurement is that of the solvers: ray = projection of bRc^T (wRb^T (P - wtb) - btc).
 
@@ -196,8 +196,10 @@ private:
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
   double placeSigma(const vpLampSight &lamp) const { return std::hypot(lamp.positionSigma, m_placeDoubt); }
   void addLamp(const vpLampSight &lamp);
-  void weighNoise(const vpLampSight &lamp);
-  void weighMotion(const vpLampSight &lamp);
+  Innovation innovation(const vpLampSight &lamp, const Predicted &predicted) const;
+  //! \param stated The covariance that the lamp's ray came with.
+  void weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated);
+  void weighMotion(const Innovation &seen, const Eigen::Matrix2d &stated);
   vpVlpFix fixOf(Index first) const;
   /*!
     \param Ht n x Rows, transpose of the innovation's derivative by the state of n. \param R Rows x Rows,
