@@ -37,7 +37,8 @@ struct Run {
   std::vector<double> nees;                 // x, y
   size_t frames = 0, fixes = 0, within = 0; // within three of the stated standard deviations
   size_t images = 0;                        // frames that were seen
-  size_t ids = 0, wrong = 0;                // lamp images with an id, with another lamp's
+  size_t ids = 0;                           // lamp images that have one
+  size_t swapped = 0, beside = 0;           // of these on another lamp of the map; on none
 };
 
 double at(std::vector<double> values, double share)
@@ -58,25 +59,48 @@ double mean(const std::vector<double> &values)
   return sum / static_cast<double>(values.size());
 }
 
-//! Which lamp truly shines there at that time: its id, or none.
-void countIds(const vpVlpLocation &location, vpSimulation &simulation, Run &run)
+//! Whether a lamp shines there at that time, or some of it that others leave in sight: within its disc.
+bool shows(const vpLampObservation &seen, double timestamp, const vpLamp &lamp, vpSimulation &simulation)
+{
+  const vpHomogeneousMatrix cMw = (simulation.wMb(timestamp + seen.time) * simulation.rig().bMc).inverse();
+  const vpColVector c =
+      cMw * vpColVector(std::vector<double>{lamp.position.x(), lamp.position.y(), lamp.position.z(), 1});
+  const vpCameraParameters &camera = simulation.rig().camera;
+  const double u = camera.get_u0() + camera.get_px() * c[0] / c[2],
+               v = camera.get_v0() + camera.get_py() * c[1] / c[2];
+  const double radius = 0.5 * lamp.size * camera.get_px() / c[2], about = 5; // px
+  return std::hypot(seen.outline.centre.x() - u, seen.outline.centre.y() - v) <= radius + about;
+}
+
+//! Whether it is out of order then, so that whatever shines in its place is another lamp.
+bool dark(const std::string &id, double time, const vpScenario &scenario)
+{
+  return std::any_of(scenario.lamps.begin(), scenario.lamps.end(), [&](const vpScenario::Lamp &lamp) {
+    return lamp.simulated.lamp.id == id &&
+           std::any_of(lamp.dark.begin(), lamp.dark.end(),
+                       [time](const auto &off) { return time >= off.first && time < off.second; });
+  });
+}
+
+void countIds(const vpVlpLocation &location, const vpScenario &scenario, vpSimulation &simulation, Run &run)
 {
   for (const vpLampObservation &seen : location.observations) {
     if (seen.id.empty()) {
       continue;
     }
     ++run.ids;
-    const vpLamp *lamp = simulation.map().find(seen.id);
-    const vpHomogeneousMatrix cMw =
-        (simulation.wMb(location.timestamp + seen.time) * simulation.rig().bMc).inverse();
-    const vpColVector c =
-        cMw * vpColVector(std::vector<double>{lamp->position.x(), lamp->position.y(), lamp->position.z(), 1});
-    const vpCameraParameters &camera = simulation.rig().camera;
-    const double u = camera.get_u0() + camera.get_px() * c[0] / c[2],
-                 v = camera.get_v0() + camera.get_py() * c[1] / c[2];
-    // A part of it that others leave in sight lies anywhere in its disc.
-    const double radius = 0.5 * lamp->size * camera.get_px() / c[2], about = 5; // px
-    run.wrong += std::hypot(seen.outline.centre.x() - u, seen.outline.centre.y() - v) > radius + about;
+    if (dark(seen.id, location.timestamp + seen.time, scenario)) {
+      ++run.swapped;
+      continue;
+    }
+    if (shows(seen, location.timestamp, *simulation.map().find(seen.id), simulation)) {
+      continue;
+    }
+    const std::vector<vpLamp> &lamps = simulation.map().lamps;
+    const bool another = std::any_of(lamps.begin(), lamps.end(), [&](const vpLamp &lamp) {
+      return shows(seen, location.timestamp, lamp, simulation);
+    });
+    ++(another ? run.swapped : run.beside);
   }
 }
 
@@ -101,7 +125,7 @@ Run runOf(const std::string &name, std::uint64_t seed, const Settings &settings)
       }
     }
     const vpVlpLocation location = localizer.process(frame);
-    countIds(location, simulation, run);
+    countIds(location, scenario, simulation, run);
     if (frame.timestamp < settings.from || frame.timestamp > settings.until) {
       continue;
     }
@@ -234,15 +258,17 @@ void nees(int seeds)
 
 void ids(int seeds)
 {
-  std::printf("\n| run | frames | lamp images with an id | with another lamp's |\n|---|---|---|---|\n");
+  std::printf("\n| run | frames | lamp images with an id | of them on another lamp | on none "
+              "|\n|---|---|---|---|---|\n");
   for (const char *name : {"crossing", "half-hidden", "people", "swapped-lamp"}) {
-    size_t frames = 0, count = 0, wrong = 0;
+    size_t frames = 0, count = 0, swapped = 0, beside = 0;
     for (const Run &run : runsOf(name, seeds, {})) {
       frames += run.images;
       count += run.ids;
-      wrong += run.wrong;
+      swapped += run.swapped;
+      beside += run.beside;
     }
-    std::printf("| %s | %zu | %zu | %zu |\n", name, frames, count, wrong);
+    std::printf("| %s | %zu | %zu | %zu | %zu |\n", name, frames, count, swapped, beside);
     std::fflush(stdout);
   }
 }

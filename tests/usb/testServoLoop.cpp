@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "opencr/vpServoOverBoard.h"
-#include "opencr_usb/vpEmulatedUsbBoard.h"
+#include "usb/vpEmulatedUsbBoard.h"
 
 TEST(ServoOverUsb, FollowsTheLineInRealTime)
 {

@@ -7,16 +7,14 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
+#include <vector>
 
 #include "opencr/vpRealTimeBoard.h"
+#include "usb/vpEmulatedUsbDevice.h"
 
-/*!
-  A board as a USB device under umockdev: what the kernel's usbfs would answer, as far as libusb asks for it.
-  The program has to run under umockdev-wrapper.
-*/
-class vpEmulatedUsbBoard
+//! A board as a USB device.
+class vpEmulatedUsbBoard : public vpEmulatedUsbDevice
 {
 public:
   //! Who has an interface.
@@ -28,26 +26,31 @@ public:
                                   Owner::kernel}; // of the interfaces, the kernel's driver: cdc_acm
     std::array<std::uint8_t, 7> lineCoding{};
     bool dtr = false, rts = false;
-    int rtsRaised = 0;      // times
-    int claims = 0;         // of interfaces
-    bool stalled = false;   // takes nothing and sends nothing
-    bool unplugged = false; // since the last plug()
+    int rtsRaised = 0;    // times
+    int claims = 0;       // of interfaces
+    bool stalled = false; // takes nothing and sends nothing
   };
 
   //! Not plugged in. \e serial: its serial number, empty for none.
   vpEmulatedUsbBoard(vpRealTimeBoard &board, const std::string &serial);
-  ~vpEmulatedUsbBoard();
-
-  //! As device \e number of bus 1.
-  void plug(int number);
-  void unplug();
+  ~vpEmulatedUsbBoard() override;
 
   State state() const;
   void setState(const State &state);
 
 private:
-  class Impl;
-  std::unique_ptr<Impl> m_impl;
+  void plugged() override;
+  Result claim(unsigned int interface) override;
+  Result disconnectAndClaim(unsigned int interface) override;
+  Result release(unsigned int interface) override;
+  Result connectDriver(unsigned int interface) override;
+  bool control(const Setup &setup, std::vector<std::uint8_t> &data) override;
+  bool mayTransfer() const override;
+  bool receive(const std::vector<std::uint8_t> &data) override;
+  std::vector<std::uint8_t> send(size_t room) override;
+
+  vpRealTimeBoard &m_board;
+  State m_state;
 };
 
 #endif

@@ -8,7 +8,7 @@
 
 #include "common/vpExpectError.h"
 #include "opencr/vpDrivenLoop.h"
-#include "opencr_usb/vpEmulatedUsbBoard.h"
+#include "usb/vpEmulatedUsbBoard.h"
 
 namespace
 {
