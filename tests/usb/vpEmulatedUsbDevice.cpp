@@ -42,7 +42,8 @@ std::shared_ptr<UMockdevTestbed> testbed()
 struct vpEmulatedUsbDevice::Urb {
   Data data;
   Data buffer;
-  std::uint64_t address = 0; // in the program
+  const UMockdevIoctlClient *client = nullptr; // the open file that it came by and goes back by
+  std::uint64_t address = 0;                   // in the program
   usbdevfs_urb &get() const { return *contents<usbdevfs_urb>(data); }
   unsigned char *bytes() const { return buffer->data; }
 };
@@ -64,6 +65,9 @@ vpEmulatedUsbDevice::vpEmulatedUsbDevice(const std::string &descriptors, const s
 vpEmulatedUsbDevice::~vpEmulatedUsbDevice()
 {
   unplug();
+  for (const std::string &node : m_nodes) {
+    umockdev_testbed_detach_ioctl(m_testbed.get(), node.c_str(), nullptr);
+  }
   g_object_unref(m_handler);
 }
 
@@ -85,8 +89,10 @@ void vpEmulatedUsbDevice::plug(int number)
       "\nE: DEVTYPE=usb_device\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=" +
       std::to_string(number) + "\\n\nA: speed=" + std::to_string(m_megabits) +
       "\\n\nH: descriptors=" + m_descriptors + "\n";
-  if (!umockdev_testbed_attach_ioctl(m_testbed.get(), m_node.c_str(), m_handler, nullptr) ||
-      !umockdev_testbed_add_from_string(m_testbed.get(), text.c_str(), nullptr)) {
+  const bool answers = m_nodes.count(m_node) > 0 ||
+                       umockdev_testbed_attach_ioctl(m_testbed.get(), m_node.c_str(), m_handler, nullptr);
+  m_nodes.insert(m_node);
+  if (!answers || !umockdev_testbed_add_from_string(m_testbed.get(), text.c_str(), nullptr)) {
     throw std::runtime_error("no emulated USB device; umockdev-wrapper?");
   }
 }
@@ -106,7 +112,6 @@ void vpEmulatedUsbDevice::unplug()
   }
   umockdev_testbed_uevent(m_testbed.get(), ("/sys" + m_path).c_str(), "remove");
   umockdev_testbed_remove_device(m_testbed.get(), ("/sys" + m_path).c_str());
-  umockdev_testbed_detach_ioctl(m_testbed.get(), m_node.c_str(), nullptr);
   m_node.clear();
 }
 
@@ -115,18 +120,19 @@ gboolean vpEmulatedUsbDevice::handle(UMockdevIoctlBase *, UMockdevIoctlClient *c
 {
   const std::lock_guard<std::mutex> lock(self->m_mutex);
   const Result result =
-      self->answer(umockdev_ioctl_client_get_request(client), umockdev_ioctl_client_get_arg(client));
+      self->answer(umockdev_ioctl_client_get_request(client), umockdev_ioctl_client_get_arg(client), client);
   umockdev_ioctl_client_complete(client, result.error == 0 ? result.value : -1, result.error);
   return TRUE;
 }
 
-vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::answer(unsigned long request, UMockdevIoctlData *argument)
+vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::answer(unsigned long request, UMockdevIoctlData *argument,
+                                                        const UMockdevIoctlClient *client)
 {
   const auto number = [argument] {
     return *contents<unsigned int>(resolved(argument, 0, sizeof(unsigned int)));
   };
   if (request == USBDEVFS_REAPURB || request == USBDEVFS_REAPURBNDELAY) {
-    return reap(argument);
+    return reap(argument, client);
   }
   if (m_gone) {
     return {-1, ENODEV};
@@ -148,7 +154,7 @@ vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::answer(unsigned long request, U
   case USBDEVFS_IOCTL:
     return ofDriver(argument);
   case USBDEVFS_SUBMITURB:
-    return submit(argument);
+    return submit(argument, client);
   case USBDEVFS_DISCARDURB:
     return discard(argument);
   default:
@@ -170,9 +176,11 @@ vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::connectDriver(unsigned int)
   return {0, 0};
 }
 
-vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::submit(UMockdevIoctlData *argument)
+vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::submit(UMockdevIoctlData *argument,
+                                                        const UMockdevIoctlClient *client)
 {
   Urb urb;
+  urb.client = client;
   urb.data = resolved(argument, 0, sizeof(usbdevfs_urb));
   urb.address = urb.data->client_addr;
   urb.buffer =
@@ -224,10 +232,12 @@ void vpEmulatedUsbDevice::finish(Urb urb, int status, int length)
   m_done.push_back(std::move(urb));
 }
 
-vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::reap(UMockdevIoctlData *argument)
+vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::reap(UMockdevIoctlData *argument,
+                                                      const UMockdevIoctlClient *client)
 {
-  const auto reading = std::find_if(m_waiting.begin(), m_waiting.end(),
-                                    [](const Urb &urb) { return (urb.get().endpoint & toHost) != 0; });
+  const auto reading = std::find_if(m_waiting.begin(), m_waiting.end(), [client](const Urb &urb) {
+    return urb.client == client && (urb.get().endpoint & toHost) != 0;
+  });
   if (reading != m_waiting.end()) {
     const std::vector<std::uint8_t> packet = send(static_cast<size_t>(reading->get().buffer_length));
     if (!packet.empty()) {
@@ -236,12 +246,14 @@ vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::reap(UMockdevIoctlData *argumen
       m_waiting.erase(reading);
     }
   }
-  if (m_done.empty()) {
+  const auto done =
+      std::find_if(m_done.begin(), m_done.end(), [client](const Urb &urb) { return urb.client == client; });
+  if (done == m_done.end()) {
     return {-1, m_gone ? ENODEV : EAGAIN};
   }
   const Data pointer = resolved(argument, 0, sizeof(void *));
-  umockdev_ioctl_data_set_ptr(pointer.get(), 0, m_done.front().data.get());
-  m_done.pop_front();
+  umockdev_ioctl_data_set_ptr(pointer.get(), 0, done->data.get());
+  m_done.erase(done);
   return {0, 0};
 }
 

@@ -9,6 +9,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -67,11 +68,11 @@ private:
 
   static gboolean handle(UMockdevIoctlBase *, UMockdevIoctlClient *client, vpEmulatedUsbDevice *self);
   static Data resolved(UMockdevIoctlData *data, size_t offset, size_t size);
-  Result answer(unsigned long request, UMockdevIoctlData *argument);
+  Result answer(unsigned long request, UMockdevIoctlData *argument, const UMockdevIoctlClient *client);
   Result ofDriver(UMockdevIoctlData *argument);
-  Result submit(UMockdevIoctlData *argument);
+  Result submit(UMockdevIoctlData *argument, const UMockdevIoctlClient *client);
   void answerControl(Urb &urb);
-  Result reap(UMockdevIoctlData *argument);
+  Result reap(UMockdevIoctlData *argument, const UMockdevIoctlClient *client);
   Result discard(UMockdevIoctlData *argument);
   void finish(Urb urb, int status, int length);
 
@@ -80,8 +81,9 @@ private:
   int m_megabits;
   std::shared_ptr<UMockdevTestbed> m_testbed;
   UMockdevIoctlBase *m_handler;
-  std::string m_node; // /dev/bus/usb/..., empty while unplugged
-  std::string m_path; // in sysfs
+  std::string m_node;            // /dev/bus/usb/..., empty while unplugged
+  std::string m_path;            // in sysfs
+  std::set<std::string> m_nodes; // whose ioctls are answered: programs may still hold one that is gone
   bool m_gone = true;
   std::deque<Urb> m_waiting; // bulk, for the device
   std::deque<Urb> m_done;    // to be reaped

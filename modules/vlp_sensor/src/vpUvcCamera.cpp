@@ -5,9 +5,12 @@
 // USB Video Class cameras over libusb, through libuvc: without the kernel's driver, which is left as it was.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <ctime>
+#include <condition_variable>
 #include <memory>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include <libuvc/libuvc.h>
@@ -68,6 +71,71 @@ struct Address {
   }
 };
 
+/*!
+  The newest frame, as libuvc's thread delivers it. Its uvc_stream_get_frame() is no way to wait: up to 0.0.6
+  it keeps the stream's mutex where it times out, and the next frame never comes.
+*/
+class Inbox
+{
+public:
+  static void receive(uvc_frame_t *seen, void *inbox) { static_cast<Inbox *>(inbox)->put(*seen); }
+
+  //! \return False where none came within \e patience, s.
+  bool take(double patience, vpImage<unsigned char> &I, vpCameraCounters &counters)
+  {
+    std::unique_lock<std::mutex> lock(m_mutex);
+    const bool came =
+        m_came.wait_for(lock, std::chrono::duration<double>(patience), [this] { return m_full; });
+    counters.broken += m_broken;
+    counters.late += m_late;
+    m_broken = m_late = 0;
+    if (came) {
+      std::swap(I, m_newest);
+      m_taken = m_time;
+      m_full = false;
+    }
+    return came;
+  }
+
+  //! Of the frame that was taken, s since its last packet.
+  double age() const
+  {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_taken).count();
+  }
+
+private:
+  void put(const uvc_frame_t &seen)
+  {
+    const bool grey = seen.frame_format == UVC_FRAME_FORMAT_GRAY8;
+    const unsigned int step = grey ? 1 : 2, first = seen.frame_format == UVC_FRAME_FORMAT_UYVY ? 1 : 0;
+    const size_t line = std::max<size_t>(seen.step, static_cast<size_t>(step) * seen.width);
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    if (seen.height == 0 ||
+        seen.data_bytes < line * (seen.height - 1) + static_cast<size_t>(step) * seen.width) {
+      ++m_broken;
+      return;
+    }
+    m_late += m_full;
+    m_newest.resize(seen.height, seen.width);
+    for (unsigned int v = 0; v < seen.height; ++v) {
+      const unsigned char *from = static_cast<const unsigned char *>(seen.data) + line * v + first;
+      for (unsigned int u = 0; u < seen.width; ++u, from += step) {
+        m_newest[v][u] = *from;
+      }
+    }
+    m_time = std::chrono::steady_clock::now();
+    m_full = true;
+    m_came.notify_one();
+  }
+
+  std::mutex m_mutex;
+  std::condition_variable m_came;
+  vpImage<unsigned char> m_newest;
+  std::chrono::steady_clock::time_point m_time, m_taken; // when it came; of the one taken last
+  bool m_full = false;
+  std::uint64_t m_broken = 0, m_late = 0; // not yet told
+};
+
 class UvcCamera : public vpCameraDriver
 {
 public:
@@ -87,41 +155,17 @@ public:
     uvc_stream_handle_t *stream = nullptr;
     check(uvc_stream_open_ctrl(handle, &stream, &control), "stream");
     m_stream.reset(stream);
-    check(uvc_stream_start(stream, nullptr, nullptr, 0), "start");
+    check(uvc_stream_start(stream, &Inbox::receive, &m_inbox, 0), "start");
   }
 
   bool grab(double patience, const std::function<double()> &clock, vpVlpFrame &frame,
             vpCameraCounters &counters) override
   {
-    uvc_frame_t *seen = nullptr;
-    const uvc_error_t error =
-        uvc_stream_get_frame(m_stream.get(), &seen, static_cast<std::int32_t>(1e6 * patience));
-    if (error == UVC_ERROR_TIMEOUT || (error == UVC_SUCCESS && seen == nullptr)) {
+    if (!m_inbox.take(patience, frame.I, counters)) {
       return false;
     }
-    check(error, "the camera is gone");
-    if (m_numbered && seen->sequence > m_number + 1) { // libuvc keeps the newest only
-      counters.late += seen->sequence - m_number - 1;
-    }
-    m_numbered = true;
-    m_number = seen->sequence;
-    const bool grey = seen->frame_format == UVC_FRAME_FORMAT_GRAY8;
-    const unsigned int step = grey ? 1 : 2, first = seen->frame_format == UVC_FRAME_FORMAT_UYVY ? 1 : 0;
-    const size_t line = std::max<size_t>(seen->step, static_cast<size_t>(step) * seen->width);
-    if (seen->height == 0 ||
-        seen->data_bytes < line * (seen->height - 1) + static_cast<size_t>(step) * seen->width) {
-      ++counters.broken;
-      return false;
-    }
-    frame.I.resize(seen->height, seen->width);
-    for (unsigned int v = 0; v < seen->height; ++v) {
-      const unsigned char *from = static_cast<const unsigned char *>(seen->data) + line * v + first;
-      for (unsigned int u = 0; u < seen->width; ++u, from += step) {
-        frame.I[v][u] = *from;
-      }
-    }
-    // When its last packet came; it was exposed and read out within the time of a frame at most.
-    frame.timestamp = clock() - (m_rate > 0 ? 1 / m_rate : 0);
+    // It was exposed and read out within the time of a frame at most, before its last packet came.
+    frame.timestamp = clock() - m_inbox.age() - (m_rate > 0 ? 1 / m_rate : 0);
     return true;
   }
 
@@ -221,11 +265,10 @@ private:
   Context m_context; // first: all others are of it
   Device m_device;
   Handle m_handle;
+  Inbox m_inbox; // of the stream
   Stream m_stream;
   vpCameraRegion m_region;
   double m_rate = 0; // Hz, as agreed
-  bool m_numbered = false;
-  std::uint32_t m_number = 0; // of the frame before
 };
 
 std::unique_ptr<vpCameraDriver> open(const std::string &address, const vpCameraSettings &asked)
