@@ -117,6 +117,7 @@ TEST_F(VlpCalibrate, MountAndLampsWriteWhatTheyFound)
   const vpVlpRig rig = vpVlpRig::load(folder / "mount/rig.yaml");
   EXPECT_NEAR(rig.camera.get_u0(), vpVlpRig::load(run() + "/rig.yaml").camera.get_u0() + 3 / 2.56, 0.3);
   EXPECT_GT(rig.rotationSigma.x(), 0);
+  EXPECT_GT(rig.principalPointSigma.value_or(0), 0);
   for (const char *name : {"residuals.png", "report.txt", "covariance.csv", "camera.xml"}) {
     EXPECT_TRUE(std::filesystem::exists(folder / ("mount/" + std::string(name)))) << name;
   }

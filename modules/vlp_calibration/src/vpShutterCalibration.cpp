@@ -32,7 +32,8 @@ double median(std::vector<double> values)
   return *middle;
 }
 
-//! Weighted mean, its standard deviation enlarged where the values scatter more than theirs say.
+//! Weighted mean, its standard deviation by what theirs say and, the more values there are, by how they
+//! scatter.
 struct Mean {
   double value = 0;
   double sigma = 0;
@@ -49,8 +50,9 @@ struct Mean {
     for (size_t i = 0; i < values.size(); ++i) {
       chiSquare += std::pow((values[i] - value) / sigmas[i], 2);
     }
-    const double birge = values.size() > 1 ? chiSquare / static_cast<double>(values.size() - 1) : 1;
-    sigma = std::sqrt(std::max(1.0, birge) / weights);
+    static const double stated = 4; // values, that what they say of themselves weighs as much as
+    const double factor = (stated + chiSquare) / (stated + static_cast<double>(values.size()) - 1);
+    sigma = std::sqrt(factor / weights);
   }
 };
 } // namespace

@@ -72,8 +72,8 @@ struct Address {
 };
 
 /*!
-  The newest frame, as libuvc's thread delivers it. Its uvc_stream_get_frame() is no way to wait: up to 0.0.6
-  it keeps the stream's mutex where it times out, and the next frame never comes.
+  The newest frame, as libuvc's thread delivers it. uvc_stream_get_frame() is no way to wait: that of Debian
+  12 (0.0.6) keeps the stream's mutex where it times out, and the next frame never comes.
 */
 class Inbox
 {
@@ -156,6 +156,22 @@ public:
     check(uvc_stream_open_ctrl(handle, &stream, &control), "stream");
     m_stream.reset(stream);
     check(uvc_stream_start(stream, &Inbox::receive, &m_inbox, 0), "start");
+  }
+
+  /*!
+    Of a camera that is gone the handle is given up and not closed: libuvc would first set its interfaces
+    back, for which Debian 12's libusb (1.0.26) unlocks a mutex that nobody has locked and then ends the
+    program.
+  */
+  ~UvcCamera() override
+  {
+    m_stream.reset();
+    std::uint32_t exposure = 0;
+    if (uvc_get_exposure_abs(m_handle.get(), &exposure, UVC_GET_CUR) == UVC_ERROR_NO_DEVICE) {
+      static_cast<void>(m_handle.release());
+      static_cast<void>(m_device.release());
+      static_cast<void>(m_context.release());
+    }
   }
 
   bool grab(double patience, const std::function<double()> &clock, vpVlpFrame &frame,
