@@ -50,7 +50,7 @@ struct Mean {
     for (size_t i = 0; i < values.size(); ++i) {
       chiSquare += std::pow((values[i] - value) / sigmas[i], 2);
     }
-    static const double stated = 4; // values, that what they say of themselves weighs as much as
+    static const double stated = 2; // values, that what they say of themselves weighs as much as
     const double factor = (stated + chiSquare) / (stated + static_cast<double>(values.size()) - 1);
     sigma = std::sqrt(factor / weights);
   }
