@@ -10,6 +10,7 @@
 #include <visp3/vlp_sensor/vpCameraSource.h>
 
 #include "common/vpExpectError.h"
+#include "common/vpExpectLost.h"
 #include "usb/vpEmulatedUvcCamera.h"
 
 namespace
@@ -146,14 +147,7 @@ TEST_F(UvcCamera, ComesBackByItselfWithItsSettings)
   vpVlpFrame frame;
   ASSERT_TRUE(camera.next(frame));
   usb.unplug();
-  vpExpectError(
-      [&] {
-        for (int k = 0; k < 20; ++k) { // those on their way
-          camera.next(frame);
-        }
-      },
-      {uri, "waiting for it to come back"});
-  EXPECT_FALSE(camera.connected());
+  vpExpectLost(camera, uri);
   std::thread repair([this] {
     std::this_thread::sleep_for(std::chrono::seconds(2));
     usb.plug(10);

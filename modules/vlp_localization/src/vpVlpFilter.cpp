@@ -107,10 +107,10 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   sigma(turnBias) = odometryTurnBias;
   sigma.segment<3>(mount) = m_rig.translationSigma;
   sigma(mount + 3) = m_rig.rotationSigma.z();
-  const bool claims = m_tiltDoubt == 0 && m_rig.rotationSigma.isZero(0) && m_rig.translationSigma.isZero(0);
+  const bool exact = m_tiltDoubt == 0 && m_rig.rotationSigma.isZero(0) && m_rig.translationSigma.isZero(0);
   const double point = m_rig.principalPointSigma ? *m_rig.principalPointSigma / m_rig.camera.get_px()
-                                                 : (claims ? 0 : principalPoint);
-  sigma.segment<3>(lens) << point, point, m_rig.focalLengthSigma.value_or(claims ? 0 : focalLength);
+                                                 : (exact ? 0 : principalPoint);
+  sigma.segment<3>(lens) << point, point, m_rig.focalLengthSigma.value_or(exact ? 0 : focalLength);
   m_P = sigma.cwiseAbs2().asDiagonal();
   static const double steady =
       0.1; // its first two frames tell whether camera and map are as good as they say
