@@ -3,8 +3,9 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // False acceptance: how often what is no lamp of the map gets an id, while true lamps get theirs.
-// bench_acceptance [LAMPS] [true|strangers|steady|all] [SEED] [random|planned]: other seeds make other maps
-// and lamps. Planned maps are those of vpLedIdPlanner. To be run from the top of the repository.
+// bench_acceptance [LAMPS] [true|strangers|steady|all] [SEED] [random|planned] [FRAMES]: other seeds make
+// other maps and lamps. Planned maps are those of vpLedIdPlanner. FRAMES of each lamp are taken together as a
+// track's are (1). To be run from the top of the repository.
 
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +15,7 @@
 
 #include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_detection/vpLedIdEvidence.h>
 #include <visp3/vlp_detection/vpLedIdPlanner.h>
 #include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
 
@@ -109,17 +111,29 @@ double combinedSigma(const vpSimulatedStripes &stripes, double frequency)
                    std::pow(1e-6 * stripes.oscillator * frequency, 2));
 }
 
-vpLampObservation seen(const vpModulation &modulation, vpSimulatedStripes stripes, std::mt19937_64 &generator)
+//! What frames of a lamp say together: errors of the row time and of its clock are the same in all of them,
+//! phase and noise are not.
+vpLampObservation seen(vpModulation modulation, vpSimulatedStripes stripes, int frames,
+                       std::mt19937_64 &generator)
 {
-  stripes.rowTimeError = rowTimeSigma * std::normal_distribution<double>()(generator);
+  std::normal_distribution<double> normal;
+  stripes.rowTimeError = rowTimeSigma * normal(generator);
+  if (frames > 1) {
+    modulation.frequency *= 1 + 1e-6 * stripes.oscillator * normal(generator);
+    stripes.oscillator = 0;
+  }
   vpStripeAnalyzer analyzer;
   analyzer.searchTwoPulses = false;
+  vpLedIdEvidence evidence;
+  for (int frame = 0; frame < frames; ++frame) {
+    evidence.add(analyzer.analyze(stripes.profile(modulation, generator)));
+  }
   vpLampObservation lamp;
-  lamp.features = analyzer.analyze(stripes.profile(modulation, generator));
+  lamp.features = evidence.features();
   return lamp;
 }
 
-void trueLamps(const Map &map, int lamps, unsigned int seed)
+void trueLamps(const Map &map, int lamps, int frames, unsigned int seed)
 {
   const vpSimulatedStripes stripes;
   const vpLedIdRecognizer recognizer(map.map, shutterOf(stripes));
@@ -134,7 +148,7 @@ void trueLamps(const Map &map, int lamps, unsigned int seed)
         if (!modulation.duty) {
           modulation.duty = 0.2 + 0.6 * std::uniform_real_distribution<double>(0, 1)(generator);
         }
-        vpLampObservation lamp = seen(modulation, stripes, generator);
+        vpLampObservation lamp = seen(modulation, stripes, frames, generator);
         recognizer.recognize(lamp);
         const std::lock_guard<std::mutex> lock(guard);
         right += lamp.id == sent.id;
@@ -151,7 +165,7 @@ void trueLamps(const Map &map, int lamps, unsigned int seed)
 }
 
 //! \param apart From every lamp of the map, combined standard deviations; 0: any frequency.
-void strangers(const Map &map, int lamps, double apart, unsigned int seed)
+void strangers(const Map &map, int lamps, double apart, int frames, unsigned int seed)
 {
   const vpSimulatedStripes stripes;
   const vpLedIdRecognizer recognizer(map.map, shutterOf(stripes));
@@ -176,7 +190,7 @@ void strangers(const Map &map, int lamps, double apart, unsigned int seed)
           modulation.frequency = lowest + (highest - lowest) * uniform(generator);
         } while (distance() < apart);
         modulation.duty = 0.2 + 0.6 * uniform(generator);
-        vpLampObservation lamp = seen(modulation, stripes, generator);
+        vpLampObservation lamp = seen(modulation, stripes, frames, generator);
         recognizer.recognize(lamp);
         const bool near = std::any_of(map.map.lamps.begin(), map.map.lamps.end(), [&](const vpLamp &other) {
           return std::abs(other.modulation.frequency - modulation.frequency) <
@@ -347,16 +361,17 @@ int main(int argc, char **argv)
   const std::string part = argc > 2 ? argv[2] : "all";
   const unsigned int seed = argc > 3 ? static_cast<unsigned int>(std::atoi(argv[3])) : 0;
   const bool planned = argc > 4 && std::string(argv[4]) == "planned";
+  const int frames = argc > 5 ? std::max(1, std::atoi(argv[5])) : 1;
   const std::vector<Map> all = maps(planned, seed);
   if (part == "all" || part == "true") {
     for (const Map &map : all) {
-      trueLamps(map, lamps, seed);
+      trueLamps(map, lamps, frames, seed);
     }
   }
   if (part == "all" || part == "strangers") {
     for (double apart : {5., 0.}) {
       for (const Map &map : all) {
-        strangers(map, lamps, apart, seed);
+        strangers(map, lamps, apart, frames, seed);
       }
     }
   }

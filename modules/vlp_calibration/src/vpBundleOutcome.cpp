@@ -15,18 +15,20 @@
 
 BEGIN_VISP_NAMESPACE
 
-vpBundleResidual vpBundleProblem::residualOf(size_t view, size_t image) const
+vpBundleResidual vpBundleProblem::residualOf(size_t view, size_t image)
 {
   const vpBundleView &entry = m_start.views[view];
   const vpLampImage &seen = m_runs[entry.run].views[entry.view].images[image];
-  const vpImageResidual residual(m_start.rig, seen, entry.since[image], m_imageWeight);
+  const vpImageResidual residual(m_start.rig, seen, entry.since[image], m_bundle.wheelSeparation,
+                                 m_imageWeight);
   vpBundleResidual out;
   out.run = entry.run;
   out.view = entry.view;
   out.lamp = seen.lamp;
   out.point = seen.point;
-  out.residual = residual.pixels(m_rig.data(), m_odometry.data(), m_poses[view].position,
-                                 &m_poses[view].heading, m_lamps[seen.lamp].data());
+  out.residual = residual.pixels(m_rig.data(), m_odometry.data(), slipAt(view, entry.since[image].dt),
+                                 m_rates[view].data(), m_poses[view].position, &m_poses[view].heading,
+                                 m_lamps[seen.lamp].data());
   out.sigmas = m_imageWeight * (residual.whitening * out.residual).norm();
   out.used = entry.used[image];
   return out;

@@ -34,28 +34,6 @@ vpRigVector boundsOfFree()
   return bounds;
 }
 
-/*!
-  By how much the variance of a sum of neighbouring residuals exceeds the sum of their variances: 1 where they
-  are independent. Their correlations are weighed by Bartlett's window (Newey and West 1987).
-*/
-double correlated(const std::vector<double> &residuals, const std::vector<size_t> &rows)
-{
-  static const size_t longest = 36; // steps: three seconds of frames
-  double variance = 0;
-  for (const size_t row : rows) {
-    variance += residuals[row] * residuals[row];
-  }
-  double ratio = 1;
-  for (size_t lag = 1; lag <= std::min(longest, rows.size() / 4); ++lag) {
-    double product = 0;
-    for (size_t i = lag; i < rows.size(); ++i) {
-      product += residuals[rows[i]] * residuals[rows[i - lag]];
-    }
-    ratio += 2 * (1 - static_cast<double>(lag) / (longest + 1)) * product / std::max(variance, 1e-300);
-  }
-  return std::max(1.0, ratio);
-}
-
 template <int Residuals, int... Blocks, typename Functor>
 ceres::CostFunction *cost(Functor *functor)
 {
@@ -66,7 +44,8 @@ ceres::CostFunction *cost(Functor *functor)
 vpBundleProblem::vpBundleProblem(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs,
                                  const vpVlpRig &prior, const vpLampMap &priorMap, vpBundleStart &start)
     : m_bundle(bundle), m_runs(runs), m_prior(prior), m_priorMap(priorMap), m_start(start),
-      m_rig(vpRigVector::Zero())
+      m_rig(vpRigVector::Zero()), m_slips(start.views.size(), Eigen::Vector2d::Zero()),
+      m_rates(start.views.size(), Eigen::Vector2d::Zero())
 {
   for (const vpLamp &lamp : start.map.lamps) {
     m_lamps.push_back(lamp.position);
@@ -84,6 +63,13 @@ vpBundleProblem::vpBundleProblem(const vpLampBundle &bundle, const std::vector<v
       m_freeRig.push_back(i);
     }
   }
+  m_steps.resize(start.views.size());
+  for (size_t i = 1; i < start.views.size(); ++i) {
+    const vpBundleView &before = start.views[i - 1], &view = start.views[i];
+    if (before.run == view.run && runs[view.run].motion == Motion::wheels) {
+      m_steps[i] = start.paths[view.run].step(before.time, view.time);
+    }
+  }
 }
 
 void vpBundleProblem::add(ceres::CostFunction *function, bool robust, const std::vector<double *> &blocks,
@@ -94,20 +80,36 @@ void vpBundleProblem::add(ceres::CostFunction *function, bool robust, const std:
   m_rows.insert(m_rows.end(), rows.begin(), rows.end());
 }
 
+/*!
+  Slip of the wheels between a view's pose and an image of it: that of the step which the image's time lies
+  in, or of the other one at an end of the run; none where no odometry tells the steps.
+*/
+double *vpBundleProblem::slipAt(size_t view, double since)
+{
+  const size_t next = view + 1;
+  const bool before = m_steps[view].has_value(), after = next < m_steps.size() && m_steps[next];
+  return after && (since > 0 || !before) ? m_slips[next].data() : m_slips[view].data();
+}
+
 void vpBundleProblem::addImages()
 {
+  const Eigen::Vector2d sigma(m_bundle.odometrySpeed, m_bundle.odometryRate);
   for (size_t i = 0; i < m_poses.size(); ++i) {
     const vpBundleView &view = m_start.views[i];
     const std::vector<vpLampImage> &images = m_runs[view.run].views[view.view].images;
     for (size_t k = 0; k < images.size(); ++k) {
       if (view.used[k]) {
-        add(cost<2, vpRigParameterCount, 5, 2, 1, 3>(
-                new vpImageResidual(m_start.rig, images[k], view.since[k], m_imageWeight)),
+        add(cost<2, vpRigParameterCount, 5, 2, 2, 2, 1, 3>(new vpImageResidual(
+                m_start.rig, images[k], view.since[k], m_bundle.wheelSeparation, m_imageWeight)),
             true,
-            {m_rig.data(), m_odometry.data(), m_poses[i].position, &m_poses[i].heading,
-             m_lamps[images[k].lamp].data()},
+            {m_rig.data(), m_odometry.data(), slipAt(i, view.since[k].dt), m_rates[i].data(),
+             m_poses[i].position, &m_poses[i].heading, m_lamps[images[k].lamp].data()},
             {Row::image, Row::image});
       }
+    }
+    if (m_problem->HasParameterBlock(m_rates[i].data())) {
+      add(cost<2, 2>(new vpRatesResidual{sigma, &m_ratesWeight}), true, {m_rates[i].data()},
+          {Row::rates, Row::rates});
     }
   }
 }
@@ -116,32 +118,47 @@ void vpBundleProblem::addMotion()
 {
   for (size_t i = 0; i < m_poses.size(); ++i) {
     const vpBundleView &view = m_start.views[i];
-    const Motion motion = m_runs[view.run].motion;
-    if (motion == Motion::known) {
-      add(cost<3, 2, 1>(
-              new vpPlaceResidual{view.start, m_runs[view.run].placeSigma, m_runs[view.run].headingSigma}),
-          false, {m_poses[i].position, &m_poses[i].heading}, {Row::other, Row::other, Row::other});
-    }
-    if (motion != Motion::wheels || i == 0 || m_start.views[i - 1].run != view.run) {
-      continue;
-    }
-    const vpBundleView &before = m_start.views[i - 1];
-    if (const auto step = m_start.paths[view.run].step(before.time, view.time)) {
-      const double share = m_bundle.odometryShare;
-      const Eigen::Vector3d sigma(
-          std::hypot(m_bundle.odometryLength, share * step->length),
-          std::hypot(m_bundle.sideways, share * step->length * std::abs(step->turned)),
-          std::hypot(m_bundle.odometryTurn, share * step->turned));
-      add(cost<3, 5, 2, 1, 2, 1>(new vpStepResidual{*step, sigma, &m_stepWeight}), true,
-          {m_odometry.data(), m_poses[i - 1].position, &m_poses[i - 1].heading, m_poses[i].position,
-           &m_poses[i].heading},
-          {Row::along, Row::sideways, Row::turn});
-    } else if (m_runs[view.run].odometry.empty()) {
+    const vpLampRun &run = m_runs[view.run];
+    if (run.motion == Motion::known) {
+      add(cost<3, 2, 1>(new vpPlaceResidual{view.start, run.placeSigma, run.headingSigma}), false,
+          {m_poses[i].position, &m_poses[i].heading}, {Row::other, Row::other, Row::other});
+    } else if (m_steps[i]) {
+      addStep(i);
+    } else if (run.motion == Motion::wheels && run.odometry.empty() && i > 0 &&
+               m_start.views[i - 1].run == view.run) {
       add(cost<1, 2, 1, 2, 1>(new vpRollingResidual{m_bundle.sideways, &m_stepWeight}), true,
           {m_poses[i - 1].position, &m_poses[i - 1].heading, m_poses[i].position, &m_poses[i].heading},
           {Row::sideways});
     }
   }
+}
+
+//! The odometry's step to a view, and the wheels' slip over it.
+void vpBundleProblem::addStep(size_t i)
+{
+  const vpPlanarStep &step = *m_steps[i];
+  const Eigen::Vector3d sigma(
+      m_bundle.odometryLength,
+      std::hypot(m_bundle.sideways, m_bundle.slip * step.length * std::abs(step.turned)),
+      m_bundle.odometryTurn);
+  const Eigen::Vector2d ways = vpRolled(step, m_bundle.wheelSeparation).cwiseAbs();
+  add(cost<3, 5, 2, 2, 1, 2, 1>(new vpStepResidual{step, m_bundle.wheelSeparation, sigma, &m_stepWeight}),
+      true,
+      {m_odometry.data(), m_slips[i].data(), m_poses[i - 1].position, &m_poses[i - 1].heading,
+       m_poses[i].position, &m_poses[i].heading},
+      {Row::along, Row::sideways, Row::turn});
+  const std::vector<Row> rows(2, Row::slip);
+  if (!m_steps[i - 1]) {
+    const Eigen::Vector2d any = Eigen::Vector2d::Constant(m_bundle.slip);
+    add(cost<2, 2>(new vpSlipResidual{Eigen::Vector2d::Zero(), any, &m_slipWeight}), true,
+        {m_slips[i].data()}, rows);
+    return;
+  }
+  static const double least = 1e-4; // m, so that a wheel that stands may begin anew
+  const Eigen::Vector2d kept = (-ways.cwiseMax(least) / m_bundle.slipLength).array().exp();
+  const Eigen::Vector2d more = m_bundle.slip * (1 - kept.array().square()).sqrt();
+  add(cost<2, 2, 2>(new vpSlipResidual{kept, more, &m_slipWeight}), true,
+      {m_slips[i - 1].data(), m_slips[i].data()}, rows);
 }
 
 void vpBundleProblem::addPriors()
@@ -188,6 +205,11 @@ void vpBundleProblem::hold()
     m_problem->SetParameterBlockConstant(m_rig.data());
   } else if (!held.empty()) {
     m_problem->SetManifold(m_rig.data(), new ceres::SubsetManifold(vpRigParameterCount, held));
+  }
+  for (size_t i = 0; i < m_slips.size(); ++i) {
+    if (!m_steps[i] && m_problem->HasParameterBlock(m_slips[i].data())) {
+      m_problem->SetParameterBlockConstant(m_slips[i].data());
+    }
   }
   for (size_t k = 0; k < m_lamps.size(); ++k) {
     if (!(m_bundle.lampSigma[k] > 0) && m_problem->HasParameterBlock(m_lamps[k].data())) {
@@ -240,8 +262,8 @@ vpNormalEquations vpBundleProblem::equations()
 {
   std::vector<double *> poses, rest;
   std::set<double *> known;
-  for (Pose &pose : m_poses) {
-    for (double *block : {pose.position, &pose.heading}) {
+  for (size_t i = 0; i < m_poses.size(); ++i) {
+    for (double *block : {m_poses[i].position, &m_poses[i].heading, m_slips[i].data(), m_rates[i].data()}) {
       if (m_problem->HasParameterBlock(block) && known.insert(block).second) {
         poses.push_back(block);
       }
@@ -271,7 +293,7 @@ bool vpBundleProblem::weigh()
 {
   bool settled = true;
   const vpNormalEquations equations = this->equations();
-  const auto weighOne = [&](Row kind, double &weight, bool series) {
+  const auto weighOne = [&](Row kind, double &weight) {
     const std::vector<size_t> rows = rowsOf(kind);
     if (rows.empty()) {
       return;
@@ -286,19 +308,17 @@ bool vpBundleProblem::weigh()
       squares += equations.residuals()[row] * equations.residuals()[row];
     }
     static const double lowest = 1e-3; // of a stated sigma; observations without any noise
-    // Slip lasts longer than a step. Where images hardly question the motion its residuals are smooth by
-    // themselves.
-    const double questioned = std::clamp(4 * redundancy / static_cast<double>(rows.size()) - 2, 0.0, 1.0);
-    const double more = series ? 1 + questioned * (correlated(equations.residuals(), rows) - 1) : 1;
     const double before = weight;
-    weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12) / more), lowest, 1 / lowest);
+    weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12)), lowest, 1 / lowest);
     static const double nearly = 0.03; // a share
     settled = settled && std::abs(std::log(weight / before)) < nearly;
   };
-  weighOne(Row::image, m_imageWeight, false);
-  weighOne(Row::along, m_stepWeight(0), true);
-  weighOne(Row::sideways, m_stepWeight(1), true);
-  weighOne(Row::turn, m_stepWeight(2), true);
+  weighOne(Row::image, m_imageWeight);
+  weighOne(Row::along, m_stepWeight(0));
+  weighOne(Row::sideways, m_stepWeight(1));
+  weighOne(Row::turn, m_stepWeight(2));
+  weighOne(Row::slip, m_slipWeight);
+  weighOne(Row::rates, m_ratesWeight);
   return settled;
 }
 

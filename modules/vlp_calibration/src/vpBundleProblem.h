@@ -7,6 +7,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,7 @@ public:
 private:
   using Vector5d = Eigen::Matrix<double, 5, 1>;
   //! Rows of the residuals, in the order of m_blocks.
-  enum class Row { image, along, sideways, turn, other };
+  enum class Row { image, rates, along, sideways, turn, slip, other };
   //! A view's values: those of a spin share one position.
   struct Pose {
     double *position;
@@ -51,6 +52,8 @@ private:
   void build();
   void addImages();
   void addMotion();
+  void addStep(size_t view);
+  double *slipAt(size_t view, double since);
   void addPriors();
   void hold();
   void add(ceres::CostFunction *cost, bool robust, const std::vector<double *> &blocks,
@@ -59,7 +62,7 @@ private:
   std::vector<size_t> rowsOf(Row kind) const;
   std::vector<std::string> unseparated();
   vpRigMatrix covarianceOf(const Eigen::MatrixXd &covariance) const;
-  vpBundleResidual residualOf(size_t view, size_t image) const;
+  vpBundleResidual residualOf(size_t view, size_t image);
 
   const vpLampBundle &m_bundle;
   const std::vector<vpLampRun> &m_runs;
@@ -72,8 +75,13 @@ private:
   std::vector<Eigen::Vector3d> m_lamps;
   std::deque<Eigen::Vector2d> m_positions; // a deque: its places in memory stay
   std::vector<Pose> m_poses;
+  std::vector<std::optional<vpPlanarStep>> m_steps; // of the odometry, to each view from the one before
+  std::vector<Eigen::Vector2d> m_slips;             // of the wheels over these, a share
+  std::vector<Eigen::Vector2d> m_rates;             // what speed and turn rate are off by within each view
 
   double m_imageWeight = 1;
+  double m_ratesWeight = 1;
+  double m_slipWeight = 1;
   Eigen::Vector3d m_stepWeight = Eigen::Vector3d::Ones();
 
   std::unique_ptr<ceres::Problem> m_problem;

@@ -9,8 +9,9 @@
   \file vpBundleResiduals.h
   The residuals of vpLampBundle, for Ceres' automatic derivatives. Parameter blocks: the step of the rig (as
   vpRigParameter), the odometry's errors (as vpOdometryError), position (m) and heading (rad) of the base,
-  position of a lamp (m). All residuals are in standard deviations, times a \e weight that is shared by all of
-  a kind and changes between solutions.
+  slip of the left and the right wheel over a step (share of their ways), errors of speed (m/s) and turn rate
+  (rad/s) within a frame, position of a lamp (m). All residuals are in standard deviations, times a \e weight
+  that is shared by all of a kind and changes between solutions.
 */
 
 #include <ceres/rotation.h>
@@ -23,16 +24,37 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! The step that the base truly made where its odometry says \e step: x, y (m) and turn (rad).
+//! m, what the left and the right wheel roll over a step. \param separation m, of the wheels; 0: unknown.
+inline Eigen::Vector2d vpRolled(const vpPlanarStep &step, double separation)
+{
+  const double half = 0.5 * separation * step.turn;
+  return {step.along - half, step.along + half};
+}
+
+//! m straight on and rad that a step goes beside the odometry's where wheels slip. \param separation m, of
+//! the wheels; 0: their slip tells nothing of the turn.
 template <typename T>
-Eigen::Matrix<T, 3, 1> vpTrueStep(const vpPlanarStep &step, const T *odometry)
+Eigen::Matrix<T, 2, 1> vpBySlip(const vpPlanarStep &step, double separation, const T *slip)
+{
+  const Eigen::Vector2d ways = vpRolled(step, separation);
+  const T left = slip[0] * T(ways(0)), right = slip[1] * T(ways(1));
+  return {T(-0.5) * (left + right), separation > 0 ? (left - right) / T(separation) : T(0.0)};
+}
+
+//! The step that the base truly made where its odometry says \e step: x, y (m) and turn (rad).
+//! \param more What it went on straight (m) and turned (rad) beside.
+template <typename T>
+Eigen::Matrix<T, 3, 1> vpTrueStep(const vpPlanarStep &step, const T *odometry,
+                                  const Eigen::Matrix<T, 2, 1> &more)
 {
   // Of all of it only the first order, step by step small: the drift is along the chord of the way.
-  const T more = odometry[2] * T(step.turn) + odometry[3] * T(step.along) + odometry[4] * T(step.dt); // rad
-  const T half = T(0.5) * more, length = T(1.0) + odometry[0], drift = odometry[1] * T(step.turn);
+  const T turned =
+      odometry[2] * T(step.turn) + odometry[3] * T(step.along) + odometry[4] * T(step.dt) + more(1); // rad
+  const T half = T(0.5) * turned, length = T(1.0) + odometry[0],
+          drift = odometry[1] * T(step.turn) + more(0); // m
   const double c = std::cos(0.5 * step.turn), s = std::sin(0.5 * step.turn);
   return {length * (T(step.x) - half * T(step.y)) + drift * T(c),
-          length * (half * T(step.x) + T(step.y)) + drift * T(s), T(step.turn) + more};
+          length * (half * T(step.x) + T(step.y)) + drift * T(s), T(step.turn) + turned};
 }
 
 //! A lamp's image point against its prediction.
@@ -40,14 +62,15 @@ struct vpImageResidual {
   const vpVlpRig *rig;
   vpLampImage image;
   vpPlanarStep since;        // from the view's pose to the image's own time
+  double separation;         // m, of the wheels
   Eigen::Matrix2d whitening; // 1/px
   Eigen::Matrix3d cRb;       // of the rig as given
   Eigen::Vector3d btc;       // m, likewise
   const double *weight;
 
   vpImageResidual(const vpVlpRig &rigGiven, const vpLampImage &seen, const vpPlanarStep &motion,
-                  const double &weightOfAll)
-      : rig(&rigGiven), image(seen), since(motion), weight(&weightOfAll)
+                  double separationOfWheels, const double &weightOfAll)
+      : rig(&rigGiven), image(seen), since(motion), separation(separationOfWheels), weight(&weightOfAll)
   {
     const Eigen::LLT<Eigen::Matrix2d> root(image.covariance.inverse().eval());
     whitening = root.matrixU();
@@ -57,13 +80,15 @@ struct vpImageResidual {
 
   //! Measured minus predicted, px of the picture's middle.
   template <typename T>
-  Eigen::Matrix<T, 2, 1> pixels(const T *step, const T *odometry, const T *position, const T *heading,
-                                const T *lamp) const
+  Eigen::Matrix<T, 2, 1> pixels(const T *step, const T *odometry, const T *slip, const T *rates,
+                                const T *position, const T *heading, const T *lamp) const
   {
     using std::cos;
     using std::sin;
     using Vector = Eigen::Matrix<T, 3, 1>;
-    const Eigen::Matrix<T, 3, 1> moved = vpTrueStep(since, odometry);
+    const Eigen::Matrix<T, 3, 1> moved = vpTrueStep<T>(
+        since, odometry,
+        vpBySlip(since, separation, slip) + T(since.dt) * Eigen::Map<const Eigen::Matrix<T, 2, 1>>(rates));
     const T c0 = cos(heading[0]), s0 = sin(heading[0]);
     const T x = lamp[0] - position[0] - (c0 * moved(0) - s0 * moved(1)),
             y = lamp[1] - position[1] - (s0 * moved(0) + c0 * moved(1));
@@ -83,11 +108,25 @@ struct vpImageResidual {
   }
 
   template <typename T>
-  bool operator()(const T *step, const T *odometry, const T *position, const T *heading, const T *lamp,
-                  T *residual) const
+  bool operator()(const T *step, const T *odometry, const T *slip, const T *rates, const T *position,
+                  const T *heading, const T *lamp, T *residual) const
   {
     Eigen::Map<Eigen::Matrix<T, 2, 1>> r(residual);
-    r = T(*weight) * (whitening.cast<T>() * pixels(step, odometry, position, heading, lamp));
+    r = T(*weight) * (whitening.cast<T>() * pixels(step, odometry, slip, rates, position, heading, lamp));
+    return true;
+  }
+};
+
+//! Errors of speed and turn rate within a frame.
+struct vpRatesResidual {
+  Eigen::Vector2d sigma; // m/s, rad/s
+  const double *weight;
+
+  template <typename T>
+  bool operator()(const T *rates, T *residual) const
+  {
+    residual[0] = T(*weight / sigma(0)) * rates[0];
+    residual[1] = T(*weight / sigma(1)) * rates[1];
     return true;
   }
 };
@@ -95,24 +134,48 @@ struct vpImageResidual {
 //! The step from one view's pose to the next against the odometry's: along the base, sideways, turn.
 struct vpStepResidual {
   vpPlanarStep step;
+  double separation;     // m, of the wheels
   Eigen::Vector3d sigma; // m, m, rad
   const Eigen::Vector3d *weight;
 
   template <typename T>
-  bool operator()(const T *odometry, const T *position0, const T *heading0, const T *position1,
+  bool operator()(const T *odometry, const T *slip, const T *position0, const T *heading0, const T *position1,
                   const T *heading1, T *residual) const
   {
     using std::cos;
     using std::sin;
-    const Eigen::Matrix<T, 3, 1> expected = vpTrueStep(step, odometry);
+    const Eigen::Matrix<T, 3, 1> expected = vpTrueStep<T>(step, odometry, vpBySlip(step, separation, slip));
     // In the frame that has turned half way: there the way of a base that rolls is straight ahead.
-    const T half = heading0[0] + T(0.5) * expected(2);
+    const T half = T(0.5) * (heading0[0] + heading1[0]);
     const T c = cos(half), s = sin(half), ch = cos(T(0.5) * expected(2)), sh = sin(T(0.5) * expected(2));
     const T x = position1[0] - position0[0], y = position1[1] - position0[1];
     residual[0] = T((*weight)(0) / sigma(0)) * (c * x + s * y - (ch * expected(0) + sh * expected(1)));
     residual[1] = T((*weight)(1) / sigma(1)) * (-s * x + c * y - (-sh * expected(0) + ch * expected(1)));
     residual[2] = T((*weight)(2) / sigma(2)) * (heading1[0] - heading0[0] - expected(2));
     return true;
+  }
+};
+
+//! Slip over the first step of a run, and from step to step: what is kept of it falls off exponentially with
+//! the way of each wheel (a Gauss-Markov process).
+struct vpSlipResidual {
+  Eigen::Vector2d kept, sigma; // share; of what is new
+  const double *weight;
+
+  template <typename T>
+  bool operator()(const T *before, const T *slip, T *residual) const
+  {
+    for (int i = 0; i < 2; ++i) {
+      residual[i] = T(*weight / sigma(i)) * (slip[i] - T(kept(i)) * before[i]);
+    }
+    return true;
+  }
+
+  template <typename T>
+  bool operator()(const T *slip, T *residual) const
+  {
+    const T none[2] = {T(0.0), T(0.0)};
+    return (*this)(none, slip, residual);
   }
 };
 

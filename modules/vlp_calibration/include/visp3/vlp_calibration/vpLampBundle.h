@@ -75,7 +75,8 @@ struct VISP_EXPORT vpBundleResult {
   and after show. The residual is that of the solvers, ray = projection of bRc^T (wRb^T (P - wtb) - btc),
   weighed by the point's covariance. Residuals of the motion: how far the step from frame to frame is off the
   odometry's, along the base, sideways and in heading; its constant errors (vpOdometryError) are estimated
-  along.
+  along, and so is the slip of each wheel, which lasts longer than a step (a Gauss-Markov process along its
+  way).
 
   Huber's loss bounds what an outlier does, and points far off are left out in the end. How large the errors
   of image points and odometry truly are is estimated with the rest: variance components (Foerstner 1979),
@@ -98,10 +99,13 @@ public:
   //! second in the direction from there that the map has.
   std::optional<vpLampDistance> distance;
 
-  double odometryShare = 0.01;  // of a step, that it may be off by, standard deviation
-  double odometryLength = 5e-5; // m, likewise of each step
+  double slip = 0.01;           // of each wheel's way, standard deviation
+  double slipLength = 0.1;      // m rolled, over which slip is forgotten
+  double odometryLength = 5e-5; // m, that each step may be off by, standard deviation
   double odometryTurn = 5e-4;   // rad, likewise
-  double sideways = 5e-6;       // m, likewise
+  double odometrySpeed = 5e-4;  // m/s, that the speed within a frame may be off by, likewise
+  double odometryRate = 5e-3;   // rad/s, that the turn rate within a frame may be off by, likewise
+  double sideways = 1e-6;       // m, likewise
   /*!
     Distance of the wheels, m, where the odometry's turn rate is theirs: then one difference of their radii
     makes both driftPerTurn and turnPerMetre, and without that a sideways offset of the camera would pass for
