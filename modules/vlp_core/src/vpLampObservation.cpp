@@ -5,8 +5,8 @@
 #include <visp3/vlp_core/vpLampObservation.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
 
 #include <Eigen/Dense>
 #include <visp3/core/vpMeterPixelConversion.h>
@@ -52,7 +52,7 @@ Eigen::Vector2d pixelOf(const vpCameraParameters &camera, const Eigen::Vector2d 
   Pole of \e line with respect to the conic through \e points, all in the same plane coordinates. False where
   the points lie on no ellipse, or where the line meets it: then there is no pole inside.
 */
-bool poleInside(const std::vector<Eigen::Vector2d> &points, const Eigen::Vector3d &line,
+bool poleInside(const std::array<Eigen::Vector2d, outlineSamples> &points, const Eigen::Vector3d &line,
                 Eigen::Vector2d &pole)
 {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -68,13 +68,16 @@ bool poleInside(const std::vector<Eigen::Vector2d> &points, const Eigen::Vector3
   }
 
   // Centred, scaled coordinates s = (x - mean) / spread: without them the squares drown the constant term.
-  Eigen::Matrix<double, Eigen::Dynamic, 6> rows(static_cast<Eigen::Index>(points.size()), 6);
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d s = (points[i] - mean) / spread;
-    rows.row(static_cast<Eigen::Index>(i)) << s.x() * s.x(), s.x() * s.y(), s.y() * s.y(), s.x(), s.y(), 1;
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  Eigen::Matrix<double, 6, 6> products = Eigen::Matrix<double, 6, 6>::Zero();
+  for (const Eigen::Vector2d &point : points) {
+    const Eigen::Vector2d s = (point - mean) / spread;
+    const Vector6d row = (Vector6d() << s.x() * s.x(), s.x() * s.y(), s.y() * s.y(), s, 1).finished();
+    products += row * row.transpose();
   }
-  const Eigen::Matrix<double, 6, 1> q =
-      Eigen::JacobiSVD<Eigen::MatrixXd>(rows, Eigen::ComputeFullV).matrixV().col(5);
+  // The points lie on a conic but for rounding and the lens's distortion of one.
+  const Vector6d q =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(products).eigenvectors().col(0);
   Eigen::Matrix3d conic;
   conic << q(0), q(1) / 2, q(3) / 2, q(1) / 2, q(2), q(4) / 2, q(3) / 2, q(4) / 2, q(5);
   if (conic(0, 0) < 0) {
@@ -150,11 +153,10 @@ Eigen::Vector2d vpLampOutline::middle(const vpCameraParameters &camera, const Ei
   }
   const Eigen::Vector2d major = a * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   const Eigen::Vector2d minor = b * Eigen::Vector2d(-std::sin(angle), std::cos(angle));
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(outlineSamples);
+  std::array<Eigen::Vector2d, outlineSamples> points;
   for (int i = 0; i < outlineSamples; ++i) {
     const double t = 2 * M_PI * i / outlineSamples;
-    points.push_back(normalised(camera, centre + std::cos(t) * major + std::sin(t) * minor));
+    points[static_cast<size_t>(i)] = normalised(camera, centre + std::cos(t) * major + std::sin(t) * minor);
   }
 
   // The vanishing line of the lamp's plane is the plane's normal itself: n . (x, y, 1) = 0.

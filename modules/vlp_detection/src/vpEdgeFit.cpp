@@ -96,7 +96,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   end.blurBlur = a * a * without(centred(BB, B, B), BD, BD, DD);
   end.shift = a * without(centred(SI, S, I), SD, DI, DD);
   end.blur = a * without(centred(BI, B, I), BD, DI, DD);
-  m_ends.push_back(end);
+  m_memory->ends.push_back(end);
 }
 
 //! Where the outline touches the line, or comes near: its direction changes from pixel to pixel.
@@ -140,9 +140,10 @@ void vpEdgeFit<Model>::addAlong(int line, const vpLineStretch &pixels)
   end.pixels = pixels.to - pixels.from + 1;
   end.shiftShift = a * a * sums(shift, shift);
   end.shift = a * sums(shift, grey);
-  end.along = static_cast<int>(m_along.size());
-  m_along.push_back({a * a * sums.template bottomRightCorner<N, N>(), a * sums.col(grey).template tail<N>()});
-  m_ends.push_back(end);
+  end.along = static_cast<int>(m_memory->along.size());
+  m_memory->along.push_back(
+      {a * a * sums.template bottomRightCorner<N, N>(), a * sums.col(grey).template tail<N>()});
+  m_memory->ends.push_back(end);
 }
 
 template <class Model>
@@ -171,8 +172,9 @@ void vpEdgeFit<Model>::addEnds(int from, int to)
 template <>
 void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to)
 {
+  vpEllipseEdges::linesOf(*m_lines, from, to, m_model, m_every, m_litOnly, m_memory->lines, m_memory->light);
   vpEllipseEdges(*m_lines, *m_v, *m_u, m_aligned, m_model, m_blur, m_reach)
-      .find(vpEllipseEdges::linesOf(*m_lines, from, to, m_model, m_every, m_litOnly), m_ends, m_along);
+      .find(m_memory->lines, m_memory->ends, m_memory->along);
 }
 
 template <class Model>
@@ -180,11 +182,9 @@ void vpEdgeFit<Model>::findEnds()
 {
   double top, bottom;
   m_model.vertical(top, bottom);
-  m_ends.clear();
-  m_along.clear();
   const int from = std::max(0, static_cast<int>(std::floor(top)) - 1);
   const int to = std::min(m_lines->rows - 1, static_cast<int>(std::ceil(bottom)) + 1);
-  m_ends.reserve(2 * static_cast<size_t>(std::max(0, to - from + 1)));
+  m_memory->clear(2 * static_cast<size_t>(std::max(0, to - from + 1)));
   addEnds(from, to);
 }
 
@@ -195,50 +195,51 @@ void vpEdgeFit<Model>::findEnds()
 template <class Model>
 void vpEdgeFit<Model>::assemble(Equations &equations)
 {
-  const size_t ends = m_ends.size();
-  m_offsets.resize(ends);
-  m_sorted.resize(ends);
+  const size_t ends = m_memory->ends.size();
+  std::vector<double> &offsets = m_memory->offsets, &sorted = m_memory->sorted;
+  offsets.resize(ends);
+  sorted.resize(ends);
   for (size_t i = 0; i < ends; ++i) {
-    const End &end = m_ends[i];
-    m_offsets[i] = end.offset();
+    const End &end = m_memory->ends[i];
+    offsets[i] = end.offset();
     // What the end's own best shift leaves: from a start a pixel off, all ends misfit, and none is dark for
     // it.
-    const double left = end.squares - m_offsets[i] * end.shift;
-    m_sorted[i] = std::max(0.0, left) / std::max(1, end.pixels - 3);
+    const double left = end.squares - offsets[i] * end.shift;
+    sorted[i] = std::max(0.0, left) / std::max(1, end.pixels - 3);
   }
-  const double noise = std::max(median(m_sorted), 0.05); // 8 bits round: 1/12, less where all is dark
+  const double noise = std::max(median(sorted), 0.05); // 8 bits round: 1/12, less where all is dark
   auto shines = [noise](const End &end) { return end.amplitude > 0 && end.shiftShift > 4 * noise; };
-  m_sorted.clear();
+  sorted.clear();
   for (size_t i = 0; i < ends; ++i) {
-    if (shines(m_ends[i])) {
-      m_sorted.push_back(std::abs(m_offsets[i]));
+    if (shines(m_memory->ends[i])) {
+      sorted.push_back(std::abs(offsets[i]));
     }
   }
-  const double scale = 1.4826 * std::max(median(m_sorted), 0.02);
+  const double scale = 1.4826 * std::max(median(sorted), 0.02);
   equations = Equations();
   Equations crossing; // the lower half of what they say that cross their lines
-  m_sorted.clear();
+  sorted.clear();
   double squares = 0, weights = 0, pixels = 0, chiSquare = 0, members = 0, kept = 0;
-  for (size_t i = 0; i < m_ends.size(); ++i) {
-    const End &end = m_ends[i];
+  for (size_t i = 0; i < m_memory->ends.size(); ++i) {
+    const End &end = m_memory->ends[i];
     if (!shines(end)) {
       continue;
     }
-    m_sorted.push_back(end.background);
+    sorted.push_back(end.background);
     chiSquare += end.squares;
     pixels += end.pixels;
     // An end is no outlier for being noisy: its own doubt widens the limit.
     const double variance = std::max(end.squares / std::max(1, end.pixels - 2), noise),
                  own = std::sqrt(variance / end.shiftShift);
-    const double z = m_offsets[i] / (4.685 * std::max(scale, own));
+    const double z = offsets[i] / (4.685 * std::max(scale, own));
     if (std::abs(z) >= 1) {
       continue;
     }
     ++kept;
     const double tukey = (1 - z * z) * (1 - z * z), weight = tukey / variance;
     if (end.along >= 0) {
-      equations.H += weight * m_along[static_cast<size_t>(end.along)].H;
-      equations.g += weight * m_along[static_cast<size_t>(end.along)].g;
+      equations.H += weight * m_memory->along[static_cast<size_t>(end.along)].H;
+      equations.g += weight * m_memory->along[static_cast<size_t>(end.along)].g;
     } else {
       for (int k = 0; k < N - 1; ++k) {
         const double outward = weight * end.outward(k), shift = end.shiftShift * outward;
@@ -251,7 +252,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
       crossing.H(N - 1, N - 1) += weight * end.blurBlur;
       crossing.g(N - 1) += weight * end.blur;
     }
-    squares += weight * end.shift * m_offsets[i];
+    squares += weight * end.shift * offsets[i];
     weights += weight * end.shiftShift;
     members += tukey;
   }
@@ -261,13 +262,15 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   // Ends scatter more than their pixels' noise says where the edge is no Gaussian: the covariance is to say
   // so, and the fewer they are the less they know of their own scatter.
   m_inflation = members > N ? std::max(1.0, squares / (members - N)) * (1 + 2 / (members - N)) : 3;
-  m_background = median(m_sorted);
+  m_background = median(sorted);
   m_noise = std::sqrt(noise);
   m_misfit = pixels > 0 ? chiSquare / pixels : 0;
   m_pixels = pixels;
   m_members = members;
-  m_shining = m_ends.empty() ? 0 : static_cast<double>(m_sorted.size()) / static_cast<double>(m_ends.size());
-  m_kept = m_sorted.empty() ? 0 : kept / static_cast<double>(m_sorted.size());
+  m_shining = m_memory->ends.empty()
+                  ? 0
+                  : static_cast<double>(sorted.size()) / static_cast<double>(m_memory->ends.size());
+  m_kept = sorted.empty() ? 0 : kept / static_cast<double>(sorted.size());
 }
 
 /*!
@@ -345,7 +348,7 @@ double vpEdgeFit<Model>::evenness() const
   double edges = 0, peaks = 0;
   int line = -1;
   double peak = 0; // of that line
-  for (const End &end : m_ends) {
+  for (const End &end : m_memory->ends) {
     double first, last;
     if (!m_model.stretch((*m_v)[end.line], 0, first, last)) {
       continue;

@@ -76,10 +76,34 @@ public:
   using End = vpLineEnd<N>;
   using Equations = vpNormalEquations<N>;
 
+  //! What a fit works on; one after the other may use the same, so that the next takes no memory.
+  struct Memory {
+    std::vector<End> ends;
+    std::vector<Equations> along;        // of ends that run along their line
+    std::vector<double> offsets, sorted; // of the ends
+    std::vector<int> lines, light;       // that are looked at, and how bright they are
+
+    //! \param most Ends that there may be. Memory is taken for twice as many: the next lamp has a line more.
+    void clear(size_t most)
+    {
+      static const size_t touched = 64; // ends that run along their line
+      ends.clear();
+      along.clear();
+      if (sorted.capacity() < most) {
+        along.reserve(touched);
+        ends.reserve(2 * most);
+        offsets.reserve(2 * most);
+        sorted.reserve(2 * most);
+        lines.reserve(2 * most);
+        light.reserve(2 * most);
+      }
+    }
+  };
+
   vpEdgeFit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
-            const std::vector<double> &samplePositions, const Model &start)
+            const std::vector<double> &samplePositions, const Model &start, Memory &memory)
       : m_lines(&lines), m_v(&linePositions), m_u(&samplePositions), m_aligned(aligned(samplePositions)),
-        m_model(start)
+        m_model(start), m_memory(&memory)
   {
   }
 
@@ -142,10 +166,7 @@ private:
   double m_prior = 0;
   double m_members = 0; // ends that take part
   double m_kept = 0, m_shining = 0;
-  std::vector<End> m_ends;
-  std::vector<Equations> m_along; // of ends that run along their line
-  std::vector<int> m_touched;     // lines
-  std::vector<double> m_offsets, m_sorted;
+  Memory *m_memory;
 };
 
 template <>

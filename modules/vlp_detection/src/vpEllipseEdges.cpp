@@ -228,24 +228,23 @@ vpEllipseEdges::End endOf(const Found &side, int lane)
 }
 } // namespace
 
-std::vector<int> vpEllipseEdges::linesOf(const cv::Mat_<unsigned char> &lines, int from, int to,
-                                         const vpEllipseModel &model, int every, bool litOnly)
+void vpEllipseEdges::linesOf(const cv::Mat_<unsigned char> &lines, int from, int to,
+                             const vpEllipseModel &model, int every, bool litOnly, std::vector<int> &some,
+                             std::vector<int> &light)
 {
-  std::vector<int> some;
-  some.reserve(static_cast<size_t>(std::max(0, to - from + 1)));
+  some.clear();
   for (int block = from; block <= to; block += lanes * every) {
     for (int line = block; line <= std::min(to, block + lanes - 1); ++line) {
       some.push_back(line);
     }
   }
   if (!litOnly || some.empty()) {
-    return some;
+    return;
   }
   // About the middle, where no part of the outline is but at the lamp's ends.
   static const int apart = 5; // samples
   const int middle = std::clamp(static_cast<int>(model.centre().x()), 2 * apart, lines.cols - 1 - 2 * apart);
-  std::vector<int> light;
-  light.reserve(some.size());
+  light.clear();
   for (int line : some) {
     const unsigned char *row = lines[line] + middle;
     light.push_back(row[-2 * apart] + row[-apart] + row[0] + row[apart] + row[2 * apart]);
@@ -260,7 +259,6 @@ std::vector<int> vpEllipseEdges::linesOf(const cv::Mat_<unsigned char> &lines, i
     }
   }
   some.resize(kept);
-  return some;
 }
 
 void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,

@@ -32,10 +32,11 @@ public:
 
   /*!
     Of the lines from \e from to \e to one of \e every eight; only those that are lit in their middle, about,
-    where \e litOnly: the ends of others show nothing.
+    where \e litOnly: the ends of others show nothing. \param some Takes their numbers. \param light For its
+    memory.
   */
-  static std::vector<int> linesOf(const cv::Mat_<unsigned char> &lines, int from, int to,
-                                  const vpEllipseModel &model, int every, bool litOnly);
+  static void linesOf(const cv::Mat_<unsigned char> &lines, int from, int to, const vpEllipseModel &model,
+                      int every, bool litOnly, std::vector<int> &some, std::vector<int> &light);
 
   //! Appends the ends of these lines; where the outline runs along a line, one end for both, whose equations
   //! are appended to \e along.

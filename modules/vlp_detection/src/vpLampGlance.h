@@ -44,7 +44,8 @@ private:
   void readProfile(const vpLinePicture &picture, const vpLineTiming &timing);
   bool sameStripes(const vpLinePicture &picture, const vpLineTiming &timing, const vpStripeFeatures &before);
 
-  vpStripeProfile m_profile;     // kept for its memory
+  vpEdgeFit<vpEllipseModel>::Memory m_edges; // kept for their memory: this,
+  vpStripeProfile m_profile;
   std::vector<double> m_lengths; // px, of its lines inside the outline
   vpStripeCheck m_check;
   double m_area = 0; // px

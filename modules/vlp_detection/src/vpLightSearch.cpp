@@ -98,7 +98,7 @@ bool vpLedDetector::showsMore(const vpImage<unsigned char> &I, const vpRect &win
     return true; // so bright that nothing would stand out
   }
   const auto grey = static_cast<unsigned char>(limit);
-  std::vector<std::pair<int, int>> hidden; // samples, of a line
+  static thread_local std::vector<std::pair<int, int>> hidden; // samples, of a line; for its memory
   for (int y = top; y < bottom; ++y) {
     hidden.clear();
     for (const vpRect &box : known) {

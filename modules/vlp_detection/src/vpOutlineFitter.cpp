@@ -146,14 +146,15 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   }
   const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
   const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
-  vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start);
+  vpEdgeFit<vpEllipseModel>::Memory memory;
+  vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start, memory);
   // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
   static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
   const bool whole = roi.lampness > nearlyPerfect * vpChordShape::mostLampness(2 * roi.box.height);
   bool isEllipse = whole && ellipse.run(roi.box, shapeSigma, {maxIterations, 2}, likelyBlur) &&
                    ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
   if (!isEllipse) {
-    ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, start);
+    ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, start, memory);
     isEllipse = ellipse.run(roi.box, shapeSigma, {maxIterations}) && holds(ellipse.result(), roi);
   }
   if (isEllipse) {
@@ -163,8 +164,9 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   bool even = isEllipse && ellipse.evenness() > evenEdge;
   const double sidesMisfit = vpChordShape::rectangleMisfit(ends);
   if (sidesMisfit <= 3 * ellipseMisfit) {
+    vpEdgeFit<vpQuadrilateralModel>::Memory ofSides;
     vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions,
-                                          vpQuadrilateralModel::from(ends));
+                                          vpQuadrilateralModel::from(ends), ofSides);
     if (sides.run(roi.box, shapeSigma, {maxIterations}) && sides.evenness() > evenEdge &&
         holds(sides.result(), roi)) {
       if (even) {

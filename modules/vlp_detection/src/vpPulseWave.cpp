@@ -59,8 +59,14 @@ void vpPulseWave::evaluate(const Eigen::ArrayXd &time, double frequency, double 
   for (Eigen::ArrayXd *array : {&value, &byTurn, &byWidth, &byDuty}) {
     array->resize(time.size());
   }
-  evaluateAll(time.data(), time.size(), {frequency, phase, std::max(width, narrowest), duty}, value.data(),
-              byTurn.data(), byWidth.data(), byDuty.data());
+  evaluate(time.data(), time.size(), frequency, phase, width, duty, value.data(), byTurn.data(),
+           byWidth.data(), byDuty.data());
+}
+
+void vpPulseWave::evaluate(const double *time, Eigen::Index n, double frequency, double phase, double width,
+                           double duty, double *value, double *byTurn, double *byWidth, double *byDuty)
+{
+  evaluateAll(time, n, {frequency, phase, std::max(width, narrowest), duty}, value, byTurn, byWidth, byDuty);
 }
 
 void vpPulseWave::addValue(const Eigen::ArrayXd &time, double frequency, double phase, double width,

@@ -21,6 +21,9 @@ struct vpPulseWave {
   //! \param time Of the windows' middles, s. \param phase Periods that have passed at time 0. \param width Of
   //! the windows, periods. \param duty The part that is 1.
   void evaluate(const Eigen::ArrayXd &time, double frequency, double phase, double width, double duty);
+  //! The same into memory of one's own. \param n Windows.
+  static void evaluate(const double *time, Eigen::Index n, double frequency, double phase, double width,
+                       double duty, double *value, double *byTurn, double *byWidth, double *byDuty);
   //! The same without the derivatives, added to what \e sum holds.
   static void addValue(const Eigen::ArrayXd &time, double frequency, double phase, double width, double duty,
                        Eigen::ArrayXd &sum);

@@ -24,18 +24,23 @@ bool vpStripeCheck::compare(const vpStripeProfile &profile, const vpStripeFeatur
   }
   const double middle = 0.5 * (profile.time.front() + profile.time.back());
   m_half = 0.5 * std::abs(profile.time.back() - profile.time.front());
-  m_time = Eigen::Map<const Eigen::ArrayXd>(profile.time.data(), n) - middle;
-  m_light = Eigen::Map<const Eigen::ArrayXd>(profile.light.data(), n);
+  m_lines = n;
+  const auto needed = static_cast<size_t>(parts * n);
+  if (m_memory.size() < needed) {
+    m_memory.resize(2 * needed); // the next lamp has a line more
+  }
+  Array times = part(time), lights = part(light), weights = part(weight), residual = part(weighted);
+  times = Eigen::Map<const Eigen::ArrayXd>(profile.time.data(), n) - middle;
+  lights = Eigen::Map<const Eigen::ArrayXd>(profile.light.data(), n);
   const auto noise = Eigen::Map<const Eigen::ArrayXd>(profile.sigma.data(), n);
-  m_weight = (noise.square() + (modelError * m_light).square() + 1).inverse();
-  m_columns.resize(n, all);
+  weights = (noise.square() + (modelError * lights).square() + 1).inverse();
 
   // The first harmonic peaks in the middle of the pulse.
-  const double mean = m_light.mean(), turn = 2 * M_PI * known.frequency;
+  const double mean = lights.mean(), turn = 2 * M_PI * known.frequency;
   double cosines = 0, sines = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    cosines += (m_light(i) - mean) * std::cos(turn * m_time(i));
-    sines += (m_light(i) - mean) * std::sin(turn * m_time(i));
+    cosines += (lights(i) - mean) * std::cos(turn * times(i));
+    sines += (lights(i) - mean) * std::sin(turn * times(i));
   }
   double frequency = known.frequency, phase = 0.5 * known.duty + std::atan2(-sines, cosines) / (2 * M_PI);
   const double exposure = std::isfinite(known.exposure) ? known.exposure : profile.exposure;
@@ -52,10 +57,12 @@ bool vpStripeCheck::compare(const vpStripeProfile &profile, const vpStripeFeatur
   const Matrix normal = m_normal;
   solve(frequency, phase, exposure * frequency, known.duty, linear);
   amplitude = m_solution(1);
-  const Eigen::ArrayXd residual =
-      m_light - (m_columns.leftCols<linear>() * m_solution.head<linear>()).array();
-  const double power = (m_light - mean).square().sum(),
-               inflation = (m_weight * residual.square()).sum() / static_cast<double>(n - all);
+  residual = lights;
+  for (int k = 0; k < linear; ++k) {
+    residual -= m_solution(k) * part(columns + k);
+  }
+  const double power = (lights - mean).square().sum(),
+               inflation = (weights * residual.square()).sum() / static_cast<double>(n - all);
   misfit = std::max(0.0, (residual.square() - noise.square()).sum()) / std::max(power, 1e-9);
   change = frequency - known.frequency;
   const Vector ofChange = normal.ldlt().solve(Vector(Vector::Unit(linear + 1)));
@@ -66,28 +73,31 @@ bool vpStripeCheck::compare(const vpStripeProfile &profile, const vpStripeFeatur
 //! The linear unknowns, and steps of phase and frequency where these are asked for too.
 void vpStripeCheck::solve(double frequency, double phase, double width, double duty, int unknowns)
 {
-  m_wave.evaluate(m_time, frequency, phase, width, duty);
-  m_columns.col(0).setOnes();
-  m_columns.col(1) = m_wave.value;
-  m_columns.col(2) = m_wave.value * m_time / m_half;
-  m_columns.col(3) = m_columns.col(2).array() * m_time / m_half;
-  for (int columns : {linear, unknowns}) {
-    if (columns == all) {
-      m_envelope = m_solution(1) + m_time / m_half * (m_solution(2) + m_time / m_half * m_solution(3));
-      m_columns.col(linear) = m_envelope * m_wave.byTurn;
-      m_columns.col(linear + 1) = m_columns.col(linear).array() * m_time;
+  vpPulseWave::evaluate(part(time).data(), m_lines, frequency, phase, width, duty, part(value).data(),
+                        part(byTurn).data(), part(byWidth).data(), part(byDuty).data());
+  const Array times = part(time), weights = part(weight);
+  const double perHalf = 1 / m_half;
+  part(columns).setOnes();
+  part(columns + 1) = part(value);
+  part(columns + 2) = part(value) * times * perHalf;
+  part(columns + 3) = part(columns + 2) * times * perHalf;
+  for (int count : {linear, unknowns}) {
+    if (count == all) {
+      part(envelope) = m_solution(1) + times * perHalf * (m_solution(2) + times * perHalf * m_solution(3));
+      part(columns + linear) = part(envelope) * part(byTurn);
+      part(columns + linear + 1) = part(columns + linear) * times;
     }
     m_normal.setIdentity();
     m_solution.setZero();
-    for (int k = 0; k < columns; ++k) {
-      m_weighted = m_columns.col(k).array() * m_weight;
-      vpColumnProducts(m_columns.data(), m_columns.rows(), k + 1, m_weighted.data(), &m_normal(0, k));
-      vpColumnProducts(m_light.data(), m_columns.rows(), 1, m_weighted.data(), &m_solution(k));
+    for (int k = 0; k < count; ++k) {
+      part(weighted) = part(columns + k) * weights;
+      vpColumnProducts(part(columns).data(), m_lines, k + 1, part(weighted).data(), &m_normal(0, k));
+      vpColumnProducts(part(light).data(), m_lines, 1, part(weighted).data(), &m_solution(k));
     }
     m_normal.triangularView<Eigen::StrictlyLower>() = m_normal.transpose();
-    m_normal.diagonal().head(columns) *= 1 + 1e-9;
+    m_normal.diagonal().head(count) *= 1 + 1e-9;
     m_solution = m_normal.ldlt().solve(m_solution).eval();
-    if (columns == unknowns) {
+    if (count == unknowns) {
       break;
     }
   }

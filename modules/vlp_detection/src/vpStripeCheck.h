@@ -5,6 +5,8 @@
 #ifndef vpStripeCheck_h
 #define vpStripeCheck_h
 
+#include <vector>
+
 #include <Eigen/Core>
 #include <visp3/vlp_core/vpLampObservation.h>
 #include <visp3/vlp_detection/vpStripeAnalyzer.h>
@@ -37,10 +39,25 @@ private:
 
   void solve(double frequency, double phase, double width, double duty, int unknowns);
 
-  // Kept for their memory.
-  Eigen::ArrayXd m_time, m_light, m_weight, m_envelope, m_weighted;
-  Eigen::Matrix<double, Eigen::Dynamic, all> m_columns;
-  vpPulseWave m_wave;
+  //! One value a line each; the columns of the equations from there on.
+  enum Part {
+    time,
+    light,
+    weight,
+    envelope,
+    weighted,
+    value,
+    byTurn,
+    byWidth,
+    byDuty,
+    columns,
+    parts = columns + all
+  };
+  using Array = Eigen::Map<Eigen::ArrayXd>;
+  Array part(int which) { return {m_memory.data() + which * m_lines, m_lines}; }
+
+  std::vector<double> m_memory; // of all parts, kept from profile to profile
+  Eigen::Index m_lines = 0;
   double m_half = 1; // s
   Vector m_solution;
   Matrix m_normal;

@@ -65,10 +65,10 @@ vpLampConsensus::vpLampConsensus(std::vector<const vpLamp *> lamps, const vpVlpR
 {
 }
 
-std::vector<size_t> vpLampConsensus::usable(std::vector<vpLampObservation> &observations)
+void vpLampConsensus::usable(std::vector<vpLampObservation> &observations, std::vector<size_t> &which)
 {
   static const double placed = 0.1; // share of the diameter, standard deviation of the middle
-  std::vector<size_t> which;
+  which.clear();
   for (size_t i = 0; i < observations.size(); ++i) {
     vpLampObservation &lamp = observations[i];
     if (lamp.id.empty() && lamp.candidates.empty()) {
@@ -82,7 +82,6 @@ std::vector<size_t> vpLampConsensus::usable(std::vector<vpLampObservation> &obse
       which.push_back(i);
     }
   }
-  return which;
 }
 
 std::vector<vpLampSight> vpLampConsensus::sights(const std::vector<size_t> &which) const

@@ -30,8 +30,9 @@ public:
   /*!
     Observations that may be a lamp of the map, whose place is known to a fraction of the lamp. Sets the
     remark of those whose place is not.
+    \param which Takes their indices.
   */
-  static std::vector<size_t> usable(std::vector<vpLampObservation> &observations);
+  static void usable(std::vector<vpLampObservation> &observations, std::vector<size_t> &which);
 
   /*!
     The pose of all usable lamps where their residuals are likely under all stated doubts and `mapTolerance`.

@@ -37,6 +37,11 @@ Eigen::Vector3d inFrame(const vpHomogeneousMatrix &wMa, const Eigen::Vector3d &p
   return a;
 }
 
+Eigen::Vector3d inFrame(const Eigen::Isometry3d &wMa, const Eigen::Vector3d &place)
+{
+  return wMa.linear().transpose() * (place - wMa.translation());
+}
+
 //! Pixel of a place (m, in b). False where it is not in front of the camera.
 bool pixelOf(const Eigen::Vector3d &place, const vpVlpRig &rig, Eigen::Vector2d &pixel)
 {
@@ -61,7 +66,7 @@ std::array<Eigen::Vector3d, rimPoints> unitCircle()
 }
 } // namespace
 
-bool vpLampTrust::motionOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &wMb,
+bool vpLampTrust::motionOf(const Eigen::Vector3d &place, const Eigen::Isometry3d &wMb,
                            const Eigen::Vector3d &velocity, const vpVlpRig &rig, Eigen::Vector2d &pixel,
                            Eigen::Vector2d &motion)
 {
@@ -76,7 +81,7 @@ bool vpLampTrust::motionOf(const Eigen::Vector3d &place, const vpHomogeneousMatr
   return true;
 }
 
-Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const vpHomogeneousMatrix &wMb,
+Eigen::Vector2d vpLampTrust::extentOf(const vpLamp &lamp, const Eigen::Isometry3d &wMb,
                                       const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime)
 {
   const double half = 0.5 * (std::isfinite(lamp.size) ? lamp.size : 1);

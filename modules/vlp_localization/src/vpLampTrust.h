@@ -8,6 +8,7 @@
 #include <string>
 #include <unordered_map>
 
+#include <Eigen/Geometry>
 #include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_localization/vpVlpFilter.h>
 
@@ -54,11 +55,11 @@ public:
     at \e velocity (m/s along x and y of b, rad/s): lines read while the lamp's picture runs ahead of the
     readout see it longer.
   */
-  static Eigen::Vector2d extentOf(const vpLamp &lamp, const vpHomogeneousMatrix &wMb,
+  static Eigen::Vector2d extentOf(const vpLamp &lamp, const Eigen::Isometry3d &wMb,
                                   const Eigen::Vector3d &velocity, const vpVlpRig &rig, double lineTime);
 
   //! Pixel of a place (m, in w) and its velocity, px/s. False where it is not in front of the camera.
-  static bool motionOf(const Eigen::Vector3d &place, const vpHomogeneousMatrix &wMb,
+  static bool motionOf(const Eigen::Vector3d &place, const Eigen::Isometry3d &wMb,
                        const Eigen::Vector3d &velocity, const vpVlpRig &rig, Eigen::Vector2d &pixel,
                        Eigen::Vector2d &motion);
 

@@ -16,25 +16,15 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
 double square(double x)
 {
   return x * x;
 }
 
-//! A B for few columns, each by itself.
-template <int Columns>
-Eigen::Matrix<double, Eigen::Dynamic, Columns>
-timesColumns(const Eigen::MatrixXd &A, const Eigen::Matrix<double, Eigen::Dynamic, Columns> &B)
-{
-  Eigen::Matrix<double, Eigen::Dynamic, Columns> product(A.rows(), Columns);
-  for (int k = 0; k < Columns; ++k) {
-    product.col(k).noalias() = A * B.col(k);
-  }
-  return product;
-}
-
 //! Where the base stands that leans by roll and pitch and heads along yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
-vpBasePose poseOf(const Eigen::VectorXd &state)
+vpBasePose baseOf(const Vector6d &state)
 {
   vpBasePose pose;
   pose.wtb = state.head<3>();
@@ -46,13 +36,13 @@ vpBasePose poseOf(const Eigen::VectorXd &state)
 }
 
 //! From a base that stands level to the camera, in w, m.
-Eigen::Vector3d levelArm(const Eigen::VectorXd &state, const Eigen::Vector3d &btc)
+Eigen::Vector3d levelArm(const Vector6d &state, const Eigen::Vector3d &btc)
 {
   return Eigen::AngleAxisd(state(3), Eigen::Vector3d::UnitZ()) * btc;
 }
 
 //! Rotations about the fixed axes of w by changes of yaw, roll and pitch, in the state's order.
-Eigen::Matrix3d rotationByAngles(const Eigen::VectorXd &state)
+Eigen::Matrix3d rotationByAngles(const Vector6d &state)
 {
   const Eigen::AngleAxisd heading(state(3), Eigen::Vector3d::UnitZ()),
       leaning(state(5), Eigen::Vector3d::UnitY());
@@ -69,7 +59,7 @@ struct vpVlpFilter::Predicted {
   bool inFront = false;
   double depth = 0;
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
-  Eigen::Matrix<double, Eigen::Dynamic, 2> Ht;        // transposed
+  Derivative<2> H;
   Eigen::Matrix2d ownDoubt = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
 };
 
@@ -83,18 +73,31 @@ vpVlpFilter::vpVlpFilter(const vpVlpRig &rig) : m_rig(rig) {}
 
 void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
 {
+  m_lamps.clear();
+  m_placeSigmas.clear();
+  startFrom(wMb, time);
+}
+
+void vpVlpFilter::restart(const vpHomogeneousMatrix &wMb, double time)
+{
+  startFrom(wMb, time);
+}
+
+//! Starts from a pose, with the lamps that the state has.
+void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
+{
   // Wide, yet linear: the lamps of the pose follow.
   static const double place = 0.3, turn = 0.3; // m, rad
   const vpBasePose pose = vpBasePose::of(wMb);
   m_started = true;
   m_time = time;
-  m_lamps.clear();
-  m_x = Vector::Zero(lamps);
+  const auto n = lamps + 3 * static_cast<Eigen::Index>(m_lamps.size());
+  m_x.setZero(n);
   m_x.head<3>() = pose.wtb;
   m_x(yaw) = std::atan2(pose.wRb(1, 0), pose.wRb(0, 0));
   m_x(roll) = freeAttitude ? std::atan2(pose.wRb(2, 1), pose.wRb(2, 2)) : 0;
   m_x(pitch) = freeAttitude ? -std::asin(std::clamp(pose.wRb(2, 0), -1.0, 1.0)) : 0;
-  Vector sigma = Vector::Zero(lamps);
+  Eigen::Matrix<double, lamps, 1> sigma = Eigen::Matrix<double, lamps, 1>::Zero();
   sigma.head<3>().setConstant(place);
   sigma(yaw) = turn;
   sigma.segment<2>(roll) =
@@ -111,7 +114,11 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   const double point = m_rig.principalPointSigma ? *m_rig.principalPointSigma / m_rig.camera.get_px()
                                                  : (exact ? 0 : principalPoint);
   sigma.segment<3>(lens) << point, point, m_rig.focalLengthSigma.value_or(exact ? 0 : focalLength);
-  m_P = sigma.cwiseAbs2().asDiagonal();
+  m_P.setZero(n, n);
+  m_P.diagonal().head<lamps>() = sigma.cwiseAbs2();
+  for (size_t k = 0; k < m_lamps.size(); ++k) {
+    m_P.diagonal().segment<3>(lamps + 3 * static_cast<Eigen::Index>(k)).setConstant(square(m_placeSigmas[k]));
+  }
   static const double steady =
       0.1; // its first two frames tell whether camera and map are as good as they say
   m_unrest = steady;
@@ -122,13 +129,14 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
 void vpVlpFilter::startAgain()
 {
   const Eigen::Vector3d velocity = m_x.segment<3>(vx);
-  const Eigen::Index start = lamps;
-  Vector state = Vector::Zero(start);
-  state.head<6>() = m_x.segment<6>(mark0);
-  state.segment<3>(vx) = velocity;
-  m_x = state;
+  const Vector6d marked = m_x.segment<6>(mark0);
+  m_x.setZero(m_startP.rows());
+  m_x.head<6>() = marked;
+  m_x.segment<3>(vx) = velocity;
   m_P = m_startP;
-  m_lamps.clear();
+  const auto started = static_cast<size_t>((m_startP.rows() - lamps) / 3);
+  m_lamps.resize(started);
+  m_placeSigmas.resize(started);
   m_time = m_markTime;
 }
 
@@ -175,8 +183,8 @@ void vpVlpFilter::mark(double time)
   advance(time);
   m_markTime = m_time;
   m_x.segment<6>(mark0) = m_x.head<6>();
-  m_P.middleRows<6>(mark0) = m_P.middleRows<6>(x).eval();
-  m_P.middleCols<6>(mark0) = m_P.middleCols<6>(x).eval();
+  m_P.middleRows<6>(mark0) = m_P.middleRows<6>(x);
+  m_P.middleCols<6>(mark0) = m_P.middleCols<6>(x);
 }
 
 //! Of the lamp's error in the state, -1 where it has none.
@@ -193,18 +201,20 @@ void vpVlpFilter::addLamp(const vpLampSight &lamp)
   m_P.conservativeResizeLike(Matrix::Zero(n + 3, n + 3));
   m_P.bottomRightCorner<3, 3>().diagonal().setConstant(square(placeSigma(lamp)));
   m_lamps.push_back(lamp.id);
+  m_placeSigmas.push_back(placeSigma(lamp));
 }
 
 vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
 {
-  vpBasePose pose = poseOf(m_x);
+  const Vector6d base = m_x.head<6>();
+  vpBasePose pose = baseOf(base);
   vpMountFrame frame(m_rig);
   frame.btc += m_x.segment<3>(mount);
   frame.bRc = Eigen::AngleAxisd(m_x(mount + 3), Eigen::Vector3d::UnitZ()) * frame.bRc;
   const Eigen::Index own = lampIndex(lamp);
   const Eigen::Vector3d place = own < 0 ? lamp.position : lamp.position + m_x.segment<3>(own);
   const Eigen::Vector3d rigidArm = pose.wRb * frame.btc,
-                        arm = freeAttitude ? rigidArm : levelArm(m_x, frame.btc);
+                        arm = freeAttitude ? rigidArm : levelArm(base, frame.btc);
   pose.wtb += arm - rigidArm;
   const vpPredictedRay ray = predictRay(place, pose, frame);
   Predicted predicted;
@@ -215,26 +225,33 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
   const Eigen::Vector3d camera = pose.wtb + rigidArm;
   predicted.depth = (pose.wRb * frame.bRc).col(2).dot(place - camera);
   predicted.ray = (1 + m_x(lens + 2)) * ray.ray + m_x.segment<2>(lens);
-  predicted.Ht.setZero(m_x.size(), 2);
   const Eigen::Matrix<double, 2, 3> byPlace = ray.derivative.leftCols<3>(),
                                     byTurn = ray.derivative.rightCols<3>();
-  predicted.Ht.middleRows<3>(x) = byPlace.transpose();
-  const Eigen::Matrix3d byAngles = rotationByAngles(m_x);
-  predicted.Ht.middleRows<3>(yaw) = (byTurn * byAngles).transpose();
+  const Eigen::Matrix3d byAngles = rotationByAngles(base);
+  Eigen::Matrix<double, 2, 3> byAngle = byTurn * byAngles;
   if (!freeAttitude) { // yaw carries the camera along on its level arm, roll and pitch leave it where it is
     const Eigen::Vector3d arms[] = {arm - rigidArm, -rigidArm, -rigidArm};
     for (int k = 0; k < 3; ++k) {
-      predicted.Ht.row(yaw + k) += (byPlace * byAngles.col(k).cross(arms[k])).transpose();
+      byAngle.col(k) += byPlace * byAngles.col(k).cross(arms[k]);
     }
   }
-  predicted.Ht.middleRows<3>(mount) = (byPlace * pose.wRb).transpose();
-  predicted.Ht.middleRows<2>(lens).setIdentity();
-  predicted.Ht.row(lens + 2) = ray.ray.transpose();
+  const Eigen::Matrix<double, 2, 3> byMount = byPlace * pose.wRb;
   // The camera turns about z of b and stays where it is.
   const Eigen::Vector3d axis = pose.wRb.col(2);
-  predicted.Ht.row(mount + 3) = (byTurn * axis - byPlace * axis.cross(rigidArm)).transpose();
+  Derivative<2> &H = predicted.H;
+  for (int k = 0; k < 3; ++k) {
+    H.add(x + k, byPlace.col(k).transpose());
+    H.add(yaw + k, byAngle.col(k).transpose());
+    H.add(mount + k, byMount.col(k).transpose());
+  }
+  H.add(mount + 3, (byTurn * axis - byPlace * axis.cross(rigidArm)).transpose());
+  H.add(lens, Eigen::RowVector2d::UnitX());
+  H.add(lens + 1, Eigen::RowVector2d::UnitY());
+  H.add(lens + 2, ray.ray.transpose());
   if (own >= 0) {
-    predicted.Ht.middleRows<3>(own) = -byPlace.transpose();
+    for (int k = 0; k < 3; ++k) {
+      H.add(own + k, -byPlace.col(k).transpose());
+    }
   } else {
     predicted.ownDoubt = square(placeSigma(lamp)) * byPlace * byPlace.transpose();
   }
@@ -252,8 +269,14 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp, const P
   innovation.inFront = predicted.inFront;
   if (predicted.inFront) {
     innovation.ray = lamp.ray - predicted.ray;
-    innovation.covariance = predicted.Ht.transpose() * timesColumns(m_P, predicted.Ht) + predicted.ownDoubt +
-                            m_noise * lamp.covariance;
+    innovation.covariance = predicted.ownDoubt + m_noise * lamp.covariance;
+    const Derivative<2> &H = predicted.H;
+    for (int k = 0; k < H.count; ++k) {
+      for (int l = 0; l < H.count; ++l) {
+        innovation.covariance += m_P(H.at[static_cast<size_t>(k)], H.at[static_cast<size_t>(l)]) *
+                                 H.rows.row(k).transpose() * H.rows.row(l);
+      }
+    }
     innovation.depth = predicted.depth;
   }
   return innovation;
@@ -272,36 +295,50 @@ void vpVlpFilter::update(const vpLampSight &lamp)
     const Innovation seen = innovation(lamp, predicted);
     weighMotion(seen, lamp.covariance);
     weighNoise(seen, lamp.covariance);
-    measure<2>(predicted.Ht, lamp.ray - predicted.ray, m_noise * lamp.covariance);
+    measure<2>(predicted.H, lamp.ray - predicted.ray, m_noise * lamp.covariance);
   }
 }
 
-template <int Rows>
-void vpVlpFilter::measure(const Eigen::Matrix<double, Eigen::Dynamic, Rows> &Ht,
-                          const Eigen::Matrix<double, Rows, 1> &innovation,
-                          const Eigen::Matrix<double, Rows, Rows> &R)
+template <int Values>
+void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
+                          const Eigen::Matrix<double, Values, Values> &R)
 {
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, Rows>;
-  const Columns PH = timesColumns(m_P, Ht);
-  const Eigen::Matrix<double, Rows, Rows> S = Ht.transpose() * PH + R;
-  const Eigen::Matrix<double, Rows, Rows> inverse = S.inverse();
-  Columns K = PH.lazyProduct(inverse);
+  const Eigen::Index n = m_x.size();
+  m_PH.setZero(n, 3);
+  m_K.resize(n, 3);
+  auto PH = m_PH.leftCols<Values>(), K = m_K.leftCols<Values>();
+  for (int k = 0; k < H.count; ++k) {
+    for (int value = 0; value < Values; ++value) {
+      if (H.rows(k, value) != 0) {
+        PH.col(value) += H.rows(k, value) * m_P.col(H.at[static_cast<size_t>(k)]);
+      }
+    }
+  }
+  Eigen::Matrix<double, Values, Values> S = R;
+  for (int k = 0; k < H.count; ++k) {
+    S += H.rows.row(k).transpose() * PH.row(H.at[static_cast<size_t>(k)]);
+  }
+  const Eigen::Matrix<double, Values, Values> inverse = S.inverse();
+  K = PH.lazyProduct(inverse);
   // Errors of mount, lens and map are considered, not estimated: a hundredth of a pixel, seen again and again
   // about ever other linearisations, would seem to tell them.
   K.middleRows(mount, mark0 - mount).setZero();
-  K.bottomRows(m_x.size() - lamps).setZero();
-  const Vector correction = K * innovation;
-  m_x += correction;
+  K.bottomRows(n - lamps).setZero();
+  m_x += K.lazyProduct(innovation);
   m_x(yaw) = std::remainder(m_x(yaw), 2 * M_PI);
-  // Joseph's form, which holds for any gain, multiplied out: H has few rows.
-  const Columns KS = K.lazyProduct(S);
-  m_P += (KS - PH).lazyProduct(K.transpose());
-  m_P -= K.lazyProduct(PH.transpose());
+  // Joseph's form, which holds for any gain, multiplied out: P - K W' - W K' with W = P H' - K S / 2.
+  const Eigen::Matrix<double, Values, Values> half = 0.5 * S;
+  PH -= K.lazyProduct(half);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    for (int value = 0; value < Values; ++value) {
+      m_P.col(k) -= PH(k, value) * K.col(value) + K(k, value) * PH.col(value);
+    }
+  }
   // A turn about the lamp, which its ray does not tell, is to stay untold once the place was corrected, else
   // corrections alone would tell the heading. So the covariance is that of the right-invariant error (Barrau
   // and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.
   for (const int first : {x, mark0}) {
-    const Eigen::Vector2d turned(-correction(first + 1), correction(first));
+    const Eigen::Vector2d turned(-K.row(first + 1).dot(innovation), K.row(first).dot(innovation));
     for (int k = 0; k < 2; ++k) {
       m_P.row(first + k) += turned(k) * m_P.row(first + yaw);
     }
@@ -316,39 +353,66 @@ void vpVlpFilter::measure(const Eigen::Matrix<double, Eigen::Dynamic, Rows> &Ht,
   }
 }
 
-template void vpVlpFilter::measure<2>(const Eigen::Matrix<double, Eigen::Dynamic, 2> &,
-                                      const Eigen::Vector2d &, const Eigen::Matrix2d &);
-template void vpVlpFilter::measure<3>(const Eigen::Matrix<double, Eigen::Dynamic, 3> &,
-                                      const Eigen::Vector3d &, const Eigen::Matrix3d &);
+template void vpVlpFilter::measure<2>(const Derivative<2> &, const Eigen::Vector2d &,
+                                      const Eigen::Matrix2d &);
+template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
+                                      const Eigen::Matrix3d &);
 
-//! Of the pose in the state from there on.
+//! The pose in the state from there on.
+vpVlpFilter::Pose vpVlpFilter::poseOf(Index first) const
+{
+  const Vector6d state = m_x.segment<6>(first);
+  const vpBasePose base = baseOf(state);
+  const vpMountFrame frame(m_rig);
+  Pose pose;
+  pose.wMb.linear() = base.wRb;
+  pose.wMb.translation() = base.wtb;
+  pose.wMb.makeAffine();
+  pose.wtc = base.wtb + (freeAttitude ? Eigen::Vector3d(base.wRb * frame.btc) : levelArm(state, frame.btc));
+  const Eigen::Matrix3d byAngles = rotationByAngles(state);
+  const auto P = m_P.block<6, 6>(first, first);
+  pose.covariance.topLeftCorner<3, 3>() = P.topLeftCorner<3, 3>();
+  pose.covariance.topRightCorner<3, 3>() = P.topRightCorner<3, 3>() * byAngles.transpose();
+  pose.covariance.bottomLeftCorner<3, 3>() = byAngles * P.bottomLeftCorner<3, 3>();
+  pose.covariance.bottomRightCorner<3, 3>() = byAngles * P.bottomRightCorner<3, 3>() * byAngles.transpose();
+  return pose;
+}
+
+void vpVlpFilter::tell(Index first, vpVlpFix &fix) const
+{
+  const Pose pose = poseOf(first);
+  const Eigen::Matrix3d wRc = pose.wMb.linear() * vpMountFrame(m_rig).bRc;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      fix.wMb[i][k] = pose.wMb(i, k);
+      fix.wMc[i][k] = wRc(i, k);
+    }
+    fix.wMb[i][3] = pose.wMb(i, 3);
+    fix.wMc[i][3] = pose.wtc(i);
+  }
+  fix.covariance = pose.covariance;
+}
+
 vpVlpFix vpVlpFilter::fixOf(Index first) const
 {
   vpVlpFix fix;
   fix.valid = m_started;
-  if (!m_started) {
+  if (m_started) {
+    tell(first, fix);
+  } else {
     fix.refusal = "no pose yet";
-    return fix;
   }
-  const Vector state = m_x.segment<6>(first);
-  fix.wMb = poseOf(state).wMb();
-  fix.wMc = fix.wMb * m_rig.bMc;
-  if (!freeAttitude) {
-    const Eigen::Vector3d camera = state.head<3>() + levelArm(state, vpMountFrame(m_rig).btc);
-    fix.wMc.insert(vpTranslationVector(camera.x(), camera.y(), camera.z()));
-  }
-  const Eigen::Matrix3d byAngles = rotationByAngles(state);
-  const auto P = m_P.block<6, 6>(first, first);
-  fix.covariance.topLeftCorner<3, 3>() = P.topLeftCorner<3, 3>();
-  fix.covariance.topRightCorner<3, 3>() = P.topRightCorner<3, 3>() * byAngles.transpose();
-  fix.covariance.bottomLeftCorner<3, 3>() = byAngles * P.bottomLeftCorner<3, 3>();
-  fix.covariance.bottomRightCorner<3, 3>() = byAngles * P.bottomRightCorner<3, 3>() * byAngles.transpose();
   return fix;
 }
 
 vpVlpFix vpVlpFilter::marked() const
 {
   return fixOf(mark0);
+}
+
+void vpVlpFilter::tellMarked(vpVlpFix &fix) const
+{
+  tell(mark0, fix);
 }
 
 vpVlpFix vpVlpFilter::fixAt(double time) const
@@ -361,12 +425,14 @@ vpVlpFix vpVlpFilter::fixAt(double time) const
 
 vpVlpFilter::State vpVlpFilter::state(const vpVlpFix &fix) const
 {
-  if (!fix.valid) {
-    return State::starting;
-  }
-  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
-               turn = std::sqrt(fix.covariance(5, 5));
-  if (!(fix.covariance.allFinite() && place < lostSigma && turn < lostYaw)) {
+  return fix.valid ? stateOf(fix.covariance) : State::starting;
+}
+
+vpVlpFilter::State vpVlpFilter::stateOf(const Eigen::Matrix<double, 6, 6> &covariance) const
+{
+  const double place = std::sqrt(std::max(covariance(0, 0), covariance(1, 1))),
+               turn = std::sqrt(covariance(5, 5));
+  if (!(covariance.allFinite() && place < lostSigma && turn < lostYaw)) {
     return State::lost;
   }
   return place < trackingSigma && turn < trackingYaw ? State::tracking : State::coasting;

@@ -45,7 +45,7 @@ void vpVlpFilter::addOdometry(const vpOdometry &sample)
   }
   static const size_t kept = 1000; // while nothing uses them up
   if (!m_started && m_odometry.size() > kept) {
-    m_odometry.pop_front();
+    m_odometry.erase(m_odometry.begin());
   }
 }
 
@@ -105,14 +105,14 @@ void vpVlpFilter::followOdometry(const vpOdometry &before, const vpOdometry &sam
   for (int i : {vx, vy, w}) {
     m_P(i, i) += square(i == w ? anyTurn : anySpeed);
   }
-  Eigen::Matrix<double, Eigen::Dynamic, 3> Ht;
-  Ht.setZero(m_x.size(), 3);
-  Ht(vx, 0) = 1 + m_x(speedScale);
-  Ht(speedScale, 0) = m_x(vx);
-  Ht(vy, 1) = 1;
-  Ht(w, 2) = 1 + m_x(turnScale);
-  Ht(turnScale, 2) = m_x(w);
-  Ht(turnBias, 2) = 1;
+  const Eigen::RowVector3d forward = Eigen::RowVector3d::UnitX(), turning = Eigen::RowVector3d::UnitZ();
+  Derivative<3> H;
+  H.add(vx, (1 + m_x(speedScale)) * forward);
+  H.add(speedScale, m_x(vx) * forward);
+  H.add(vy, Eigen::RowVector3d::UnitY());
+  H.add(w, (1 + m_x(turnScale)) * turning);
+  H.add(turnScale, m_x(w) * turning);
+  H.add(turnBias, turning);
   // An error that changes from sample to sample averages out over samples, however long they are.
   static const double usual = 0.02; // s
   const double dt = sample.timestamp - before.timestamp;
@@ -125,7 +125,7 @@ void vpVlpFilter::followOdometry(const vpOdometry &before, const vpOdometry &sam
   R(2, 2) = square(odometryTurnRate) + square(share * sample.w) + square(within * (sample.w - before.w));
   const Eigen::Vector3d innovation(sample.v - (1 + m_x(speedScale)) * m_x(vx), -m_x(vy),
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
-  measure<3>(Ht, innovation, R);
+  measure<3>(H, innovation, R);
 }
 
 void vpVlpFilter::advance(double time)
@@ -134,7 +134,7 @@ void vpVlpFilter::advance(double time)
     return;
   }
   while (m_odometry.size() > 1 && m_odometry[1].timestamp <= m_time) {
-    m_odometry.pop_front();
+    m_odometry.erase(m_odometry.begin());
   }
   while (time > m_time && m_odometry.size() > 1) {
     const vpOdometry &begin = m_odometry[0], &end = m_odometry[1];
@@ -155,7 +155,7 @@ void vpVlpFilter::advance(double time)
       m_time = until;
     }
     if (m_time == end.timestamp) {
-      m_odometry.pop_front();
+      m_odometry.erase(m_odometry.begin());
     }
   }
   wander(time);

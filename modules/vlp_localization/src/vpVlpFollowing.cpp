@@ -12,6 +12,7 @@
 
 #include "vpLampConsensus.h"
 #include "vpLampTrust.h"
+#include "vpVlpScratch.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -52,12 +53,12 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   filter.startAgain();
   m_trust->forgetPlaces();
   addMotionDoubt(location, members);
-  const vpVlpFix fix = correct(fine, members);
+  correct(fine, members);
   // One frame alone hardly tells a robot that moves from lamps that hang a little elsewhere.
-  if (moving && fix.valid) {
-    location.fix.wMb = fix.wMb;
-    location.fix.wMc = fix.wMc;
-    location.fix.covariance = fix.covariance;
+  if (moving && fine.fix.valid) {
+    location.fix.wMb = fine.fix.wMb;
+    location.fix.wMc = fine.fix.wMc;
+    location.fix.covariance = fine.fix.covariance;
   }
 }
 
@@ -102,8 +103,9 @@ bool vpVlpLocalizer::startAt(const vpVlpLocation &location)
 */
 void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
-  const std::vector<vpLampObservation> all = location.observations;
-  const std::vector<size_t> whole = unchanged(location, usable);
+  std::vector<vpLampObservation> &all = m_scratch->all, &apart = m_scratch->apart;
+  all = location.observations;
+  const std::vector<size_t> &whole = unchanged(location, usable);
   // Most lamps have changed where the robot is elsewhere; and a filter that is too young is no help.
   const bool changed = 2 * whole.size() < usable.size(),
              unknown = m_followed < young && vague(location.timestamp);
@@ -111,7 +113,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
       (unknown && beginAnew(location, location.observations, whole, false))) {
     return;
   }
-  std::vector<vpLampObservation> apart = location.observations;
+  apart = location.observations;
   const bool roused = correctRestless(location, whole);
   const bool contradictory = contradicts(location, whole, roused);
   const size_t fitting = 2 * accepted(location);
@@ -150,35 +152,36 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
 */
 bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole)
 {
-  const vpVlpFilter before = filter;
-  const vpLampTrust trusted = *m_trust;
-  const std::vector<vpLampObservation> seen = location.observations;
+  Scratch &scratch = *m_scratch;
+  scratch.before = filter;
+  scratch.trusted = *m_trust;
+  scratch.seen = location.observations;
   auto again = [&] {
-    filter = before;
-    *m_trust = trusted;
-    location.observations = seen;
+    filter = scratch.before;
+    *m_trust = scratch.trusted;
+    location.observations = scratch.seen;
     filter.rouse();
   };
   auto halfOrLess = [&] { return whole.size() > 1 && 2 * accepted(location) <= whole.size(); };
   bool roused = false;
-  location.fix = correct(location, whole);
+  correct(location, whole);
   if (accepted(location) == 0 || halfOrLess() ||
       !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
     roused = accepted(location) > 0;
     again();
-    location.fix = correct(location, whole);
+    correct(location, whole);
   }
   if (halfOrLess()) {
     again();
     filter.forgetVelocity();
-    location.fix = correct(location, whole);
+    correct(location, whole);
   }
   if (halfOrLess()) { // rays are not linear in so much: about what they say so far
     const Eigen::Vector3d velocity = filter.velocity();
     again();
     filter.forgetVelocity();
     filter.guessVelocity(velocity);
-    location.fix = correct(location, whole);
+    correct(location, whole);
   }
   return roused;
 }
@@ -190,9 +193,10 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
 */
 double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const
 {
-  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
-  vpVlpFilter alone = filter;
-  alone.start(location.fix.wMb, location.timestamp);
+  const std::vector<const vpLamp *> &lamps = lampsOf(location.observations);
+  vpVlpFilter &alone = m_scratch->alone;
+  alone = filter;
+  alone.restart(location.fix.wMb, location.timestamp);
   // Errors of many lamps contradict each other however the robot moves; of few, it may seem to explain them.
   static const size_t many = 8;
   static const double manoeuvring = 0.05; // share of its accelerations
@@ -235,10 +239,16 @@ bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vecto
 }
 
 //! Predicts to the frame and lets each lamp correct at the time of its line.
-vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> &usable)
+void vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
-  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
-  vpVlpFix fix;
+  const std::vector<const vpLamp *> &lamps = lampsOf(location.observations);
+  vpVlpFix &fix = location.fix;
+  fix.lamps.clear();
+  fix.residuals.clear();
+  fix.refusal.clear();
+  fix.chiSquare = 0;
+  fix.degreesOfFreedom = 0;
+  fix.ambiguous = false;
   filter.mark(location.timestamp);
   for (size_t i : inTime(location, usable)) {
     vpLampObservation &seen = location.observations[i];
@@ -264,27 +274,24 @@ vpVlpFix vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size
     fix.chiSquare += innovation.distance(0);
     fix.degreesOfFreedom += 2;
   }
-  const vpVlpFix marked = filter.marked();
-  fix.valid = marked.valid;
-  fix.wMb = marked.wMb;
-  fix.wMc = marked.wMc;
-  fix.covariance = marked.covariance;
-  return fix;
+  fix.valid = true;
+  filter.tellMarked(fix);
 }
 
 //! Whether the pose is so uncertain by then that rays to lamps are no longer linear in its error.
 bool vpVlpLocalizer::vague(double time) const
 {
   static const double most = 0.1; // rad, of a lamp's direction
-  vpVlpFilter there = filter;
+  vpVlpFilter &there = m_scratch->there;
+  there = filter;
   there.advance(time);
-  const vpVlpFix fix = there.now();
+  const vpVlpFilter::Pose pose = there.pose();
   double height = 1e9; // m, of the lowest lamp
   for (const vpLamp &lamp : m_map.lamps) {
-    height = std::min(height, lamp.position.z() - fix.wMc[2][3]);
+    height = std::min(height, lamp.position.z() - pose.wtc.z());
   }
-  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
-               turn = std::sqrt(fix.covariance(5, 5));
+  const double place = std::sqrt(std::max(pose.covariance(0, 0), pose.covariance(1, 1))),
+               turn = std::sqrt(pose.covariance(5, 5));
   return turn + place / std::max(height, 0.1) > most;
 }
 
@@ -309,7 +316,13 @@ bool vpVlpLocalizer::beginAnew(vpVlpLocation &location, std::vector<vpLampObserv
 //! Whether the lamps of a fix look from there as large as they did in the frames before.
 bool vpVlpLocalizer::asBefore(const std::vector<vpLampObservation> &observations, const vpVlpFix &fix) const
 {
-  const std::vector<const vpLamp *> lamps = lampsOf(observations);
+  const std::vector<const vpLamp *> &lamps = lampsOf(observations);
+  Eigen::Isometry3d wMb = Eigen::Isometry3d::Identity();
+  for (unsigned int row = 0; row < 3; ++row) {
+    for (unsigned int column = 0; column < 4; ++column) {
+      wMb(row, column) = fix.wMb[row][column];
+    }
+  }
   vpLampTrust trust = *m_trust;      // which counts how often it is asked
   static const double moving = 0.01; // stretch of a lamp by an unknown velocity, standard deviation
   for (size_t i = 0; i < observations.size(); ++i) {
@@ -317,7 +330,7 @@ bool vpVlpLocalizer::asBefore(const std::vector<vpLampObservation> &observations
       continue;
     }
     const vpLampExtent expected = {
-        vpLampTrust::extentOf(*lamps[i], fix.wMb, Eigen::Vector3d::Zero(), m_rig, m_lineTime), moving};
+        vpLampTrust::extentOf(*lamps[i], wMb, Eigen::Vector3d::Zero(), m_rig, m_lineTime), moving};
     if (!trust.changed(*lamps[i], observations[i], expected).empty()) {
       return false;
     }
@@ -326,10 +339,12 @@ bool vpVlpLocalizer::asBefore(const std::vector<vpLampObservation> &observations
 }
 
 //! Those that are as large and of the shape as before; the others get a remark.
-std::vector<size_t> vpVlpLocalizer::unchanged(vpVlpLocation &location, const std::vector<size_t> &usable)
+const std::vector<size_t> &vpVlpLocalizer::unchanged(vpVlpLocation &location,
+                                                     const std::vector<size_t> &usable)
 {
-  const std::vector<const vpLamp *> lamps = lampsOf(location.observations);
-  std::vector<size_t> same;
+  const std::vector<const vpLamp *> &lamps = lampsOf(location.observations);
+  std::vector<size_t> &same = m_scratch->same;
+  same.clear();
   for (size_t i : usable) {
     vpLampObservation &seen = location.observations[i];
     const std::string change =
@@ -346,22 +361,24 @@ std::vector<size_t> vpVlpLocalizer::unchanged(vpVlpLocation &location, const std
 //! Of a lamp in the picture, seen from where the filter is.
 vpLampExtent vpVlpLocalizer::expectedExtent(const vpLamp &lamp) const
 {
-  const vpVlpFix fix = filter.now();
+  const vpVlpFilter::Pose pose = filter.pose();
   const Eigen::Matrix3d doubt = filter.velocityCovariance();
-  const double height = lamp.position.z() - fix.wMc[2][3],
-               apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
+  const double height = lamp.position.z() - pose.wtc.z(), apart = (lamp.position - pose.wtc).head<2>().norm();
   const double speed = std::sqrt(std::max(doubt(0, 0), doubt(1, 1))) + apart * std::sqrt(doubt(2, 2));
-  return {vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime),
+  return {vpLampTrust::extentOf(lamp, pose.wMb, filter.velocity(), m_rig, m_lineTime),
           m_rig.camera.get_px() * speed / std::max(height, 1e-3) * std::abs(m_lineTime)};
 }
 
 //! Lamps in the order in which their lines were read.
-std::vector<size_t> vpVlpLocalizer::inTime(const vpVlpLocation &location, std::vector<size_t> which)
+const std::vector<size_t> &vpVlpLocalizer::inTime(const vpVlpLocation &location,
+                                                  const std::vector<size_t> &which) const
 {
-  std::sort(which.begin(), which.end(), [&location](size_t a, size_t b) {
+  std::vector<size_t> &ordered = m_scratch->ordered;
+  ordered = which;
+  std::sort(ordered.begin(), ordered.end(), [&location](size_t a, size_t b) {
     return location.observations[a].time < location.observations[b].time;
   });
-  return which;
+  return ordered;
 }
 
 //! At which a lamp was seen, s.

@@ -10,14 +10,33 @@
 #include "vpLampConsensus.h"
 #include "vpLampNames.h"
 #include "vpLampTrust.h"
+#include "vpVlpScratch.h"
 
 BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! As made anew, its memory kept.
+void clear(vpVlpFix &fix)
+{
+  fix.valid = fix.ambiguous = false;
+  fix.refusal.clear();
+  fix.wMb.eye();
+  fix.wMc.eye();
+  fix.other.eye();
+  fix.covariance.setZero();
+  fix.lamps.clear();
+  fix.residuals.clear();
+  fix.chiSquare = 0;
+  fix.degreesOfFreedom = 0;
+}
+} // namespace
 
 vpVlpLocalizer::vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map)
     : tracker(rig, map), matcher(rig, map), filter(rig), m_rig(rig), m_map(map),
       m_lineTime(rig.lineTiming().meanLineTime()),
       m_halfReadout(rig.lineTiming().middleAt(0.5 * (rig.lineTiming().lines() - 1))),
-      m_trust(std::make_unique<vpLampTrust>())
+      m_trust(std::make_unique<vpLampTrust>()), m_scratch(std::make_unique<Scratch>(rig))
 {
   for (size_t i = 0; i < map.lamps.size(); ++i) {
     m_lampOf.emplace(map.lamps[i].id, i);
@@ -30,23 +49,38 @@ vpVlpLocalizer::vpVlpLocalizer(vpVlpLocalizer &&) noexcept = default;
 vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
 {
   vpVlpLocation location;
+  process(frame, location);
+  return location;
+}
+
+void vpVlpLocalizer::process(const vpVlpFrame &frame, vpVlpLocation &location)
+{
   location.timestamp = frame.timestamp;
+  location.tracked = false;
+  location.state = vpVlpFilter::State::starting;
+  clear(location.fix);
   if (tracking && !inOrder(frame.timestamp)) {
+    location.observations.clear();
+    location.searched.clear();
     location.fix.refusal = "the frame is not later than the one before it";
-    return location;
+    return;
   }
-  if (filter.started() && filter.state(filter.fixAt(frame.timestamp)) == vpVlpFilter::State::lost) {
+  if (filter.started() && filter.state(filterAt(frame.timestamp).pose()) == vpVlpFilter::State::lost) {
     filter.stop(); // so long ago that what it expects of the lamps would mean nothing
   }
 
   // Sections 2.1.1 and 2.1.2: LED-ROI, outline, stripe features and LED-ID of every lamp-like region, in the
   // windows of the lamps that are followed and where new ones are searched for.
   location.observations = look(frame);
-  location.searched = tracking ? tracker.searched() : std::vector<vpRect>();
+  location.searched.clear();
+  if (tracking) {
+    location.searched = tracker.searched();
+  }
 
   // Lamps whose place in the picture can be relied on, and whose id can, once places have told apart what
   // stripes do not: lamps that share an identifier, a lamp and its reflection.
-  std::vector<size_t> usable = vpLampConsensus::usable(location.observations);
+  std::vector<size_t> &usable = m_scratch->usable;
+  vpLampConsensus::usable(location.observations, usable);
   std::string doubt;
   if (!namedApart(location.observations, usable)) {
     const vpLampMatch match = matchByPlace(location.observations, usable, frame.timestamp);
@@ -60,25 +94,33 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
   if (carried) {
     follow(location, usable);
   } else {
-    location.fix = solve(location.observations, usable);
-    if (tracking && location.fix.valid && !asBefore(location.observations, location.fix)) {
-      location.fix = vpVlpFix();
-      location.fix.refusal =
-          "the lamps are not as large as they were: partly hidden, or one behind the other";
-      vpLampConsensus::explain(location.fix, usable, location.observations);
-    } else if (tracking && location.fix.valid && !location.fix.ambiguous) {
-      begin(location);
-    }
+    solveAlone(location, usable);
   }
   if (!location.fix.valid && usable.size() < 2 && !doubt.empty()) {
     location.fix.refusal = doubt;
   }
   if (location.fix.valid && !location.fix.ambiguous) {
-    m_lastPose = {location.fix, frame.timestamp};
+    if (!m_lastPose) {
+      m_lastPose.emplace();
+    }
+    m_lastPose->fix = location.fix;
+    m_lastPose->time = frame.timestamp;
   }
   location.tracked = carried && filter.started() && m_followed > 0 && location.fix.valid;
   location.state = filter.state(location.fix);
-  return location;
+}
+
+//! The pose of this frame alone; the filter begins with it.
+void vpVlpLocalizer::solveAlone(vpVlpLocation &location, const std::vector<size_t> &usable)
+{
+  location.fix = solve(location.observations, usable);
+  if (tracking && location.fix.valid && !asBefore(location.observations, location.fix)) {
+    clear(location.fix);
+    location.fix.refusal = "the lamps are not as large as they were: partly hidden, or one behind the other";
+    vpLampConsensus::explain(location.fix, usable, location.observations);
+  } else if (tracking && location.fix.valid && !location.fix.ambiguous) {
+    begin(location);
+  }
 }
 
 //! Whether a frame may follow the last one. Where the clock was set back, all begins anew.
@@ -111,26 +153,28 @@ const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &fra
 }
 
 //! Where the picture shows the map's lamps while their lines are read, by the motion that the filter expects.
-std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
+const std::vector<vpRect> &vpVlpLocalizer::expectedWindows(double time) const
 {
-  std::vector<vpRect> windows;
+  std::vector<vpRect> &windows = m_scratch->windows;
+  windows.clear();
   if (!filter.started()) {
     return windows;
   }
   static const double farthest = 3;   // heights of a lamp above the camera
   static const double doubtful = 0.1; // rad: the lamps are then anywhere
-  const vpVlpFix fix = filter.fixAt(time + m_halfReadout);
-  const double place = std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1))),
-               turn = std::sqrt(fix.covariance(5, 5));
+  const vpVlpFilter::Pose pose = filterAt(time + m_halfReadout).pose();
+  const double place = std::sqrt(std::max(pose.covariance(0, 0), pose.covariance(1, 1))),
+               turn = std::sqrt(pose.covariance(5, 5));
   for (const vpLamp &lamp : m_map.lamps) {
-    const double height = lamp.position.z() - fix.wMc[2][3],
-                 apart = std::hypot(lamp.position.x() - fix.wMc[0][3], lamp.position.y() - fix.wMc[1][3]);
+    const double height = lamp.position.z() - pose.wtc.z(),
+                 apart = std::hypot(lamp.position.x() - pose.wtc.x(), lamp.position.y() - pose.wtc.y());
     if (!(height > 0 && apart < farthest * height && turn + place / height < doubtful)) {
       continue;
     }
     Eigen::Vector2d middle, motion;
-    const Eigen::Vector2d extent = vpLampTrust::extentOf(lamp, fix.wMb, filter.velocity(), m_rig, m_lineTime);
-    if (!vpLampTrust::motionOf(lamp.position, fix.wMb, filter.velocity(), m_rig, middle, motion)) {
+    const Eigen::Vector2d extent =
+        vpLampTrust::extentOf(lamp, pose.wMb, filter.velocity(), m_rig, m_lineTime);
+    if (!vpLampTrust::motionOf(lamp.position, pose.wMb, filter.velocity(), m_rig, middle, motion)) {
       continue;
     }
     const int along = m_rig.shutter.alongColumns() ? 0 : 1;
@@ -148,6 +192,16 @@ std::vector<vpRect> vpVlpLocalizer::expectedWindows(double time) const
   return windows;
 }
 
+//! The filter as predicted to a time: by a robot that may start and stop. Until the next call.
+const vpVlpFilter &vpVlpLocalizer::filterAt(double time) const
+{
+  vpVlpFilter &there = m_scratch->there;
+  there = filter;
+  there.rouse();
+  there.advance(time);
+  return there;
+}
+
 //! The pose of these lamps alone, of two of them or of all that agree with each other.
 vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const
 {
@@ -160,9 +214,11 @@ vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations, std
   return fix;
 }
 
-std::vector<const vpLamp *> vpVlpLocalizer::lampsOf(const std::vector<vpLampObservation> &observations) const
+const std::vector<const vpLamp *> &
+vpVlpLocalizer::lampsOf(const std::vector<vpLampObservation> &observations) const
 {
-  std::vector<const vpLamp *> lamps;
+  std::vector<const vpLamp *> &lamps = m_scratch->lamps;
+  lamps.clear();
   for (const vpLampObservation &observation : observations) {
     const auto found = m_lampOf.find(observation.id);
     lamps.push_back(found == m_lampOf.end() ? nullptr : &m_map.lamps[found->second]);

@@ -13,6 +13,7 @@
 
 #include "vpLampBoxes.h"
 #include "vpLampTrack.h"
+#include "vpTrackerScratch.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -24,15 +25,13 @@ using vpLampBoxes::widened;
 //! Whether the lamp has its middle about there, and is as it was.
 bool vpLampTracker::glanceAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place)
 {
-  if (!track.known) {
+  if (!track.sure) {
     return false;
   }
-  vpLampObservation lamp = *track.known;
-  lamp.outline.centre = {place.get_u(), place.get_v()};
-  if (detector.glance(I, lamp)) {
-    track.found = std::move(lamp);
-  }
-  return track.found.has_value();
+  track.seen = track.known;
+  track.seen.outline.centre = {place.get_u(), place.get_v()};
+  track.found = detector.glance(I, track.seen);
+  return track.found;
 }
 
 //! The same in the middle of the nearest window in which a lamp is expected.
@@ -59,7 +58,7 @@ void vpLampTracker::glance(const vpImage<unsigned char> &I)
     }
     if (track.found || glanceAt(track, I, track.target->center())) {
       track.taken = true;
-      m_observations.push_back(*track.found);
+      addObservation(track.seen);
       m_trackOf.push_back(static_cast<int>(t));
     }
   }
@@ -71,16 +70,17 @@ void vpLampTracker::glance(const vpImage<unsigned char> &I)
     return vpImagePoint::distance(m_tracks[static_cast<size_t>(m_trackOf[i])].place.getCenter(),
                                   {outline.centre.y(), outline.centre.x()});
   };
-  std::vector<bool> another(m_observations.size(), false);
+  std::vector<char> &another = m_scratch->another;
+  another.assign(m_observations.size(), 0);
   for (size_t i = 0; i < m_observations.size(); ++i) {
     for (size_t k = i + 1; k < m_observations.size(); ++k) {
       if (overlap(boxOf(m_observations[i].outline), boxOf(m_observations[k].outline)) > same) {
-        another[way(i) > way(k) ? i : k] = true;
+        another[way(i) > way(k) ? i : k] = 1;
       }
     }
   }
   for (size_t i = another.size(); i-- > 0;) {
-    if (another[i]) {
+    if (another[i] != 0) {
       m_tracks[static_cast<size_t>(m_trackOf[i])].taken = false;
       m_observations.erase(m_observations.begin() + static_cast<std::ptrdiff_t>(i));
       m_trackOf.erase(m_trackOf.begin() + static_cast<std::ptrdiff_t>(i));
@@ -92,7 +92,10 @@ void vpLampTracker::glance(const vpImage<unsigned char> &I)
 void vpLampTracker::search(const vpVlpFrame &frame)
 {
   static const double halo = 0.1, beyond = 4; // of a lamp's extent; px
-  std::vector<vpRect> known, open;
+  std::vector<vpRect> &known = m_scratch->known, &open = m_scratch->open,
+                      &knownOrSteady = m_scratch->knownOrSteady;
+  known.clear();
+  open.clear();
   double noise = 0; // grey levels
   for (const vpLampObservation &lamp : m_observations) {
     const vpRect box = boxOf(lamp.outline);
@@ -100,7 +103,7 @@ void vpLampTracker::search(const vpVlpFrame &frame)
     known.push_back(widened(box, wider));
     noise = std::max(noise, lamp.noise);
   }
-  std::vector<vpRect> knownOrSteady = known;
+  knownOrSteady = known;
   for (const Steady &steady : m_steady) {
     knownOrSteady.push_back(steady.box);
   }
@@ -134,7 +137,7 @@ void vpLampTracker::search(const vpVlpFrame &frame)
                       return other.isInside(middle) || overlap(box, other) > same;
                     });
     if (!twice) {
-      m_observations.push_back(seen);
+      addObservation(seen);
       rememberSteady(seen, frame.timestamp);
     }
   }
@@ -147,26 +150,28 @@ void vpLampTracker::search(const vpVlpFrame &frame)
 void vpLampTracker::moveSteady(double time)
 {
   using Complex = std::complex<double>;
-  std::vector<std::pair<Complex, Complex>> lamps; // from, to
-  Complex from = 0, to = 0;
-  for (size_t i = 0; i < m_observations.size(); ++i) {
-    const vpImagePoint before = m_tracks[static_cast<size_t>(m_trackOf[i])].place.getCenter();
-    const Eigen::Vector2d &now = m_observations[i].outline.centre;
-    lamps.emplace_back(Complex(before.get_u(), before.get_v()), Complex(now.x(), now.y()));
-    from += lamps.back().first;
-    to += lamps.back().second;
-  }
-  if (lamps.empty()) {
+  if (m_observations.empty()) {
     m_steady.clear(); // who knows where they are
     return;
   }
-  from /= lamps.size();
-  to /= lamps.size();
-  Complex products = 0;
+  auto beforeOf = [this](size_t i) {
+    const vpImagePoint centre = m_tracks[static_cast<size_t>(m_trackOf[i])].place.getCenter();
+    return Complex(centre.get_u(), centre.get_v());
+  };
+  auto nowOf = [this](size_t i) {
+    const Eigen::Vector2d &centre = m_observations[i].outline.centre;
+    return Complex(centre.x(), centre.y());
+  };
+  const auto count = static_cast<double>(m_observations.size());
+  Complex from = 0, to = 0, products = 0;
   double squares = 0;
-  for (const auto &[before, now] : lamps) {
-    products += std::conj(before - from) * (now - to);
-    squares += std::norm(before - from);
+  for (size_t i = 0; i < m_observations.size(); ++i) {
+    from += beforeOf(i) / count;
+    to += nowOf(i) / count;
+  }
+  for (size_t i = 0; i < m_observations.size(); ++i) {
+    products += std::conj(beforeOf(i) - from) * (nowOf(i) - to);
+    squares += std::norm(beforeOf(i) - from);
   }
   const Complex turn = squares > 0 ? products / squares : 1;
   for (Steady &steady : m_steady) {
@@ -196,17 +201,18 @@ void vpLampTracker::rememberSteady(const vpLampObservation &seen, double time)
 }
 
 //! Where to look: around each target, where lamps are expected, and the strip whose turn it is.
-std::vector<vpRect> vpLampTracker::windows(const vpVlpFrame &frame, const std::vector<vpRect> &expected)
+void vpLampTracker::setWindows(const vpVlpFrame &frame, const std::vector<vpRect> &expected)
 {
-  std::vector<vpRect> all;
+  std::vector<vpRect> &all = m_searched;
+  all.clear();
   for (Track &track : m_tracks) {
     track.taken = false;
-    track.found.reset();
+    track.found = false;
     if (track.astray) {
       track.window = track.place;
     } else {
       const bool there = m_inSight >= needed && glanceAsExpected(track, frame.I, expected) &&
-                         track.target->goOn(boxOf(track.found->outline));
+                         track.target->goOn(boxOf(track.seen.outline));
       if (!there) {
         track.target->track(frame.I);
       }
@@ -216,7 +222,6 @@ std::vector<vpRect> vpLampTracker::windows(const vpVlpFrame &frame, const std::v
   }
   all.insert(all.end(), expected.begin(), expected.end());
   all.push_back(strip());
-  return all;
 }
 
 vpRect vpLampTracker::strip()

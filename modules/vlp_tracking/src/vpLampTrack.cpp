@@ -23,13 +23,12 @@ void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
 }
 
 //! A lamp that is recognised beyond doubt may be found by a glance in the next frame.
-void vpLampTracker::Track::learn(const vpLampObservation &seen, unsigned int sure, double minConfidence)
+void vpLampTracker::Track::learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence)
 {
-  const bool decided = seen.candidates.size() <= 1 && seen.confidence >= minConfidence;
-  if (decided && evidence.frames() >= sure) {
-    known = seen;
-  } else {
-    known.reset();
+  const bool decided = lamp.candidates.size() <= 1 && lamp.confidence >= minConfidence;
+  sure = decided && evidence.frames() >= enough;
+  if (sure) {
+    known = lamp;
   }
 }
 

@@ -6,7 +6,6 @@
 #define vpLampTrack_h
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include <visp3/vlp_tracking/vpLampTracker.h>
@@ -23,11 +22,14 @@ struct vpLampTracker::Track {
   bool taken = false;  // by an observation of the frame at hand
   vpRect place;        // px, where it was seen last
   bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
-  std::vector<unsigned char> look;        // pixels of the place, line by line
-  std::optional<vpLampObservation> known; // as it was seen last, where a glance may find it again
-  std::optional<vpLampObservation> found; // by a glance, where it was expected
+  std::vector<unsigned char> look; // pixels of the place, line by line
+  vpLampObservation known;         // as it was seen last,
+  bool sure = false;               // and whether a glance may find it again
+  vpLampObservation seen;          // by a glance,
+  bool found = false;              // where it was expected
 
-  void learn(const vpLampObservation &seen, unsigned int sure, double minConfidence);
+  //! \param enough Frames that agree on it.
+  void learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence);
   void remember(const vpImage<unsigned char> &I);
   bool shown() const { return !look.empty(); }
   bool showsAgain(const vpImage<unsigned char> &I) const;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -15,6 +16,7 @@
 
 #include "vpLampBoxes.h"
 #include "vpLampTrack.h"
+#include "vpTrackerScratch.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -32,7 +34,8 @@ bool blinks(const vpLampObservation &seen)
 }
 } // namespace
 
-vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map) : detector(rig, map), m_rig(rig)
+vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map)
+    : detector(rig, map), m_rig(rig), m_scratch(std::make_unique<Scratch>())
 {
   detector.skipSteady = true; // none of them is followed
 }
@@ -66,13 +69,15 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
             std::all_of(m_tracks.begin(), m_tracks.end(),
                         [&frame](const Track &track) { return !track.shown() || track.showsAgain(frame.I); });
   // Windows from the target trackers, a strip in search of new lamps, or all of the picture.
-  m_searched = windows(frame, expected);
-  m_observations.clear();
+  setWindows(frame, expected);
+  clearObservations();
   m_trackOf.clear();
   if (m_inSight < needed) {
     m_searched.clear();
     detector.detect(frame.I);
-    m_observations = detector.observations();
+    for (const vpLampObservation &seen : detector.observations()) {
+      addObservation(seen);
+    }
     m_steady.clear();
     for (const vpLampObservation &seen : m_observations) {
       rememberSteady(seen, frame.timestamp);
@@ -104,10 +109,7 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
                                                         detector.recognizer.minConfidence);
     }
   }
-  std::stable_sort(m_observations.begin(), m_observations.end(),
-                   [](const vpLampObservation &a, const vpLampObservation &b) {
-                     return a.features.area > b.features.area;
-                   });
+  sortByArea();
   m_inSight = static_cast<size_t>(
       std::count_if(m_observations.begin(), m_observations.end(),
                     [](const vpLampObservation &seen) { return !seen.candidates.empty(); }));
@@ -118,6 +120,38 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
     track.remember(frame.I);
   }
   return m_observations;
+}
+
+//! None is left; their memory is kept for those to come.
+void vpLampTracker::clearObservations()
+{
+  std::move(m_observations.begin(), m_observations.end(), std::back_inserter(m_scratch->spare));
+  m_observations.clear();
+}
+
+void vpLampTracker::addObservation(const vpLampObservation &seen)
+{
+  std::vector<vpLampObservation> &spare = m_scratch->spare;
+  if (spare.empty()) {
+    m_observations.push_back(seen);
+  } else {
+    m_observations.push_back(std::move(spare.back()));
+    m_observations.back() = seen;
+    spare.pop_back();
+  }
+}
+
+//! The largest first; of equal ones that which was first stays so. They are few: by insertion.
+void vpLampTracker::sortByArea()
+{
+  const auto first = m_observations.begin();
+  for (auto next = first; next != m_observations.end(); ++next) {
+    const auto place =
+        std::upper_bound(first, next, *next, [](const vpLampObservation &a, const vpLampObservation &b) {
+          return a.features.area > b.features.area;
+        });
+    std::rotate(place, next, next + 1);
+  }
 }
 
 /*!

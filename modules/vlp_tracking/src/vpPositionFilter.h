@@ -5,15 +5,17 @@
 #ifndef vpPositionFilter_h
 #define vpPositionFilter_h
 
+#include <Eigen/Core>
 #include <visp3/core/vpImagePoint.h>
-#include <visp3/core/vpKalmanFilter.h>
 #include <visp3/vlp_core/vpVlpNamespace.h>
 
 BEGIN_VISP_NAMESPACE
 
 /*!
   Where the target is: a Kalman filter of constant velocity, x = (u, v, du, dv), whose measurement noise is
-  given anew with each measurement. The unit of time is one frame, velocities are in px/frame.
+  given anew with each measurement. The unit of time is one frame, velocities are in px/frame. Its two axes
+  are alike and independent, so that they share one covariance. (ViSP's vpKalmanFilter takes memory in every
+  step.)
 */
 class vpPositionFilter
 {
@@ -34,14 +36,17 @@ public:
   void rest(const vpImagePoint &position);
 
   vpImagePoint predicted() const;
-  double predictedSigma() const; // px, root mean square of both axes
+  double predictedSigma() const; // px, of either axis
 
   vpImagePoint position() const;
   vpImagePoint velocity() const; // px/frame
-  double positionSigma() const;  // px, root mean square of both axes
+  double positionSigma() const;  // px, of either axis
 
 private:
-  vpKalmanFilter m_filter;
+  Eigen::Matrix2d m_estimated = Eigen::Matrix2d::Zero(),
+                  m_predicted = Eigen::Matrix2d::Zero(); // columns u and v: px, px/frame
+  Eigen::Matrix2d m_estimatedP = Eigen::Matrix2d::Zero(),
+                  m_predictedP = Eigen::Matrix2d::Zero(); // of either column
 };
 
 END_VISP_NAMESPACE

@@ -5,11 +5,12 @@
 #ifndef vpVlpFilter_h
 #define vpVlpFilter_h
 
+#include <array>
 #include <cmath>
-#include <deque>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_localization/vpVlpFix.h>
 #include <visp3/vlp_robot/vpOdometry.h>
@@ -94,6 +95,8 @@ public:
     are to follow as updates.
   */
   void start(const vpHomogeneousMatrix &wMb, double time);
+  //! The same with the lamps that the state has, their errors as uncertain as at first: takes no memory.
+  void restart(const vpHomogeneousMatrix &wMb, double time);
   //! The same start once more, linearised about what the lamps since then have shown: their marked() pose and
   //! velocity. The lamps are to follow again.
   void startAgain();
@@ -157,13 +160,23 @@ public:
   */
   void mark(double time);
   vpVlpFix marked() const;
+  //! Sets nothing but pose and covariance, and takes no memory.
+  void tellMarked(vpVlpFix &fix) const;
 
-  //! The pose at time().
+  //! A pose in Eigen's terms: takes no memory.
+  struct Pose {
+    Eigen::Isometry3d wMb;
+    Eigen::Vector3d wtc;                    // m, of the camera
+    Eigen::Matrix<double, 6, 6> covariance; // as vpVlpFix's
+  };
+  //! The pose at time(), once started.
+  Pose pose() const { return poseOf(x); }
   vpVlpFix now() const { return fixOf(x); }
   //! The pose at any time: as predicted from time(), along the odometry as far as it is known, and by a robot
   //! that may start and stop from there on.
   vpVlpFix fixAt(double time) const;
   State state(const vpVlpFix &fix) const;
+  State state(const Pose &pose) const { return stateOf(pose.covariance); }
 
   //! Along x and y of b (m/s), and the turn rate (rad/s).
   Eigen::Vector3d velocity() const { return m_x.segment<3>(vx); }
@@ -191,6 +204,19 @@ private:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
 
+  //! Derivative of a measurement by the state: its rows that are not zero, and which of the state they are.
+  template <int Values>
+  struct Derivative {
+    std::array<Eigen::Index, 16> at;
+    Eigen::Matrix<double, 16, Values> rows;
+    int count = 0;
+
+    void add(Eigen::Index index, const Eigen::Matrix<double, 1, Values> &row)
+    {
+      at[static_cast<size_t>(count)] = index;
+      rows.row(count++) = row;
+    }
+  };
   struct Predicted;
   Predicted predict(const vpLampSight &lamp) const;
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
@@ -200,14 +226,15 @@ private:
   //! \param stated The covariance that the lamp's ray came with.
   void weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated);
   void weighMotion(const Innovation &seen, const Eigen::Matrix2d &stated);
+  Pose poseOf(Index first) const;
+  void tell(Index first, vpVlpFix &fix) const;
   vpVlpFix fixOf(Index first) const;
-  /*!
-    \param Ht n x Rows, transpose of the innovation's derivative by the state of n. \param R Rows x Rows,
-    covariance of what was measured.
-  */
-  template <int Rows>
-  void measure(const Eigen::Matrix<double, Eigen::Dynamic, Rows> &Ht,
-               const Eigen::Matrix<double, Rows, 1> &innovation, const Eigen::Matrix<double, Rows, Rows> &R);
+  State stateOf(const Eigen::Matrix<double, 6, 6> &covariance) const;
+  void startFrom(const vpHomogeneousMatrix &wMb, double time);
+  //! \param R Covariance of what was measured.
+  template <int Values>
+  void measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
+               const Eigen::Matrix<double, Values, Values> &R);
   void move(double dt, bool accelerates);
   void wander(double time);
   void followOdometry(const vpOdometry &before, const vpOdometry &sample);
@@ -218,14 +245,16 @@ private:
   double m_markTime = 0; // s
   Vector m_x;
   Matrix m_P;
-  Matrix m_startP;                   // of m_P, at the start
-  std::vector<std::string> m_lamps;  // ids whose errors are states, in their order
-  std::deque<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
-  double m_tiltDoubt = 0;            // rad, added to what the rig says of roll and pitch
-  double m_placeDoubt = 0;           // m, added to what the map says of its lamps
-  double m_noise = 1;                // variance of the lamps' points, as a share of the stated one
-  int m_weighed = 0;                 // points that it rests on
-  double m_unrest = 1;               // share of the random accelerations
+  Matrix m_startP;                                    // of m_P, at the start
+  std::vector<std::string> m_lamps;                   // ids whose errors are states, in their order
+  std::vector<double> m_placeSigmas;                  // m, of each at the start
+  Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
+  std::vector<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
+  double m_tiltDoubt = 0;             // rad, added to what the rig says of roll and pitch
+  double m_placeDoubt = 0;            // m, added to what the map says of its lamps
+  double m_noise = 1;                 // variance of the lamps' points, as a share of the stated one
+  int m_weighed = 0;                  // points that it rests on
+  double m_unrest = 1;                // share of the random accelerations
   double m_movable = 0;       // degrees of freedom, since the mark, of innovations that motion may explain
   double m_moved = 0;         // their Mahalanobis distances squared
   double m_followed = -1e300; // s, end of the interval whose odometry the velocity is

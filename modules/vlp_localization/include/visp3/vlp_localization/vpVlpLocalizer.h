@@ -80,40 +80,45 @@ public:
     is in a picture leads to a position or to a refusal.
   */
   vpVlpLocation process(const vpVlpFrame &frame);
+  //! The same into what an earlier frame gave: where lamps are followed it takes no memory.
+  void process(const vpVlpFrame &frame, vpVlpLocation &location);
 
 private:
+  struct Scratch;
   struct LastPose {
     vpVlpFix fix;
     double time = 0; // s
   };
 
   vpVlpFix solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const;
+  void solveAlone(vpVlpLocation &location, const std::vector<size_t> &usable);
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
   bool vague(double time) const;
   bool beginAnew(vpVlpLocation &location, std::vector<vpLampObservation> observations,
                  const std::vector<size_t> &usable, bool proven);
   bool correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
-  vpVlpFix correct(vpVlpLocation &location, const std::vector<size_t> &usable);
+  void correct(vpVlpLocation &location, const std::vector<size_t> &usable);
   double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
   bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused);
-  static std::vector<size_t> inTime(const vpVlpLocation &location, std::vector<size_t> which);
+  const std::vector<size_t> &inTime(const vpVlpLocation &location, const std::vector<size_t> &which) const;
   void begin(vpVlpLocation &location);
   void addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const;
   bool startAt(const vpVlpLocation &location);
   bool inOrder(double time);
   const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
-  std::vector<vpRect> expectedWindows(double time) const;
+  const std::vector<vpRect> &expectedWindows(double time) const;
+  const vpVlpFilter &filterAt(double time) const;
 
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
 
   bool asBefore(const std::vector<vpLampObservation> &observations, const vpVlpFix &fix) const;
-  std::vector<size_t> unchanged(vpVlpLocation &location, const std::vector<size_t> &usable);
+  const std::vector<size_t> &unchanged(vpVlpLocation &location, const std::vector<size_t> &usable);
   vpLampExtent expectedExtent(const vpLamp &lamp) const;
   double timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const;
 
-  //! The map's lamp of each, by its id; nullptr: none.
-  std::vector<const vpLamp *> lampsOf(const std::vector<vpLampObservation> &observations) const;
+  //! The map's lamp of each, by its id; nullptr: none. Until the next call.
+  const std::vector<const vpLamp *> &lampsOf(const std::vector<vpLampObservation> &observations) const;
 
   vpVlpRig m_rig;
   vpLampMap m_map;
@@ -123,7 +128,8 @@ private:
   std::optional<LastPose> m_lastPose;
   std::optional<double> m_lastFrame; // s
   std::unique_ptr<vpLampTrust> m_trust;
-  int m_followed = 0;       // frames since the filter's start
+  std::unique_ptr<Scratch> m_scratch; // memory that frames after the first take over
+  int m_followed = 0;                 // frames since the filter's start
   int m_contradictions = 0; // frames of late whose lamps contradict what camera and map say of themselves
   int m_disagreements = 0;  // frames in a row whose lamps agree with each other, and not with the filter
 };

@@ -82,12 +82,16 @@ public:
 
 private:
   struct Track;
+  struct Scratch;
   struct Steady {
     vpRect box;       // px, in the last frame
     double until = 0; // s
   };
 
-  std::vector<vpRect> windows(const vpVlpFrame &frame, const std::vector<vpRect> &expected);
+  void setWindows(const vpVlpFrame &frame, const std::vector<vpRect> &expected);
+  void clearObservations();
+  void addObservation(const vpLampObservation &seen);
+  void sortByArea();
   vpRect strip();
   bool glanceAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place);
   bool glanceAsExpected(Track &track, const vpImage<unsigned char> &I, const std::vector<vpRect> &expected);
@@ -104,6 +108,7 @@ private:
   void bury(double time);
 
   vpVlpRig m_rig;
+  std::unique_ptr<Scratch> m_scratch; // memory that frames after the first take over
   std::vector<Track> m_tracks;
   std::vector<Steady> m_steady;
   std::vector<vpRect> m_searched;
