@@ -250,6 +250,7 @@ bool vpBundleProblem::solve()
   options.max_num_iterations = m_bundle.maxIterations;
   options.function_tolerance = 1e-9;
   options.parameter_tolerance = 1e-10;
+  options.max_trust_region_radius = 1e12; // beyond, rounding alone makes the normal equations singular
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, m_problem.get(), &summary);

@@ -289,6 +289,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
   const double widest = 0.15 * radius + 1;
   const Eigen::Vector2d start = m_model.centre();
   m_blur = std::clamp(blur > 0 ? blur : std::clamp(0.03 * radius, 0.7, 4.0), sharpest, widest);
+  const bool likely = blur > 0;
   int sparse = steps.sparse;
   static const double many = 12; // ends, of all directions by chance alone
   int soft = 0;
@@ -310,6 +311,13 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     g = equations.g;
     m_prior = m_model.addPrior(shapeSigma, H, g);
     H.diagonal().array() += 1e-9;
+    if (likely && i < sparse) { // a start that is a little off looks blurred: that the blur is as elsewhere
+                                // is better known
+      H.row(N - 1).setZero();
+      H.col(N - 1).setZero();
+      H(N - 1, N - 1) = 1;
+      g(N - 1) = 0;
+    }
     Eigen::Matrix<double, N, 1> step = H.ldlt().solve(g);
     if (!step.allFinite()) {
       return false;
@@ -326,6 +334,11 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     m_blur = std::clamp(before + std::clamp(step(N - 1), -0.5 * before, 0.5 * before), sharpest, widest);
     if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
       return false;
+    }
+    static const double near = 0.05; // px: from there all lines together are quicker
+    if (likely && i < sparse && outlineStep.cwiseAbs().maxCoeff() < near) {
+      sparse = i + 1;
+      continue;
     }
     static const double ofBlur = 10; // which moves no edge
     if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < steps.still &&

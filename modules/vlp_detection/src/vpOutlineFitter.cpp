@@ -151,7 +151,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
   static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
   const bool whole = roi.lampness > nearlyPerfect * vpChordShape::mostLampness(2 * roi.box.height);
-  bool isEllipse = whole && ellipse.run(roi.box, shapeSigma, {maxIterations, 2}, likelyBlur) &&
+  bool isEllipse = whole && ellipse.run(roi.box, shapeSigma, {maxIterations, 2, 0.005, true}, likelyBlur) &&
                    ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
   if (!isEllipse) {
     ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, start, memory);
