@@ -108,7 +108,7 @@ void vpBundleProblem::addImages()
       }
     }
     if (m_problem->HasParameterBlock(m_rates[i].data())) {
-      add(cost<2, 2>(new vpRatesResidual{sigma, &m_ratesWeight}), true, {m_rates[i].data()},
+      add(cost<2, 2>(new vpRatesResidual{sigma, &m_ratesWeight}), false, {m_rates[i].data()},
           {Row::rates, Row::rates});
     }
   }
@@ -150,14 +150,14 @@ void vpBundleProblem::addStep(size_t i)
   const std::vector<Row> rows(2, Row::slip);
   if (!m_steps[i - 1]) {
     const Eigen::Vector2d any = Eigen::Vector2d::Constant(m_bundle.slip);
-    add(cost<2, 2>(new vpSlipResidual{Eigen::Vector2d::Zero(), any, &m_slipWeight}), true,
+    add(cost<2, 2>(new vpSlipResidual{Eigen::Vector2d::Zero(), any, &m_slipWeight}), false,
         {m_slips[i].data()}, rows);
     return;
   }
   static const double least = 1e-4; // m, so that a wheel that stands may begin anew
   const Eigen::Vector2d kept = (-ways.cwiseMax(least) / m_bundle.slipLength).array().exp();
   const Eigen::Vector2d more = m_bundle.slip * (1 - kept.array().square()).sqrt();
-  add(cost<2, 2, 2>(new vpSlipResidual{kept, more, &m_slipWeight}), true,
+  add(cost<2, 2, 2>(new vpSlipResidual{kept, more, &m_slipWeight}), false,
       {m_slips[i - 1].data(), m_slips[i].data()}, rows);
 }
 
@@ -254,6 +254,7 @@ bool vpBundleProblem::solve()
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, m_problem.get(), &summary);
+  m_converged = summary.termination_type == ceres::CONVERGENCE;
   static const double shortest = 0.1; // of the focal length: below, nothing is explained any more
   return summary.IsSolutionUsable() && m_rig.allFinite() &&
          1 + m_rig(static_cast<int>(vpRigParameter::focal)) > shortest;
@@ -294,7 +295,8 @@ bool vpBundleProblem::weigh()
 {
   bool settled = true;
   const vpNormalEquations equations = this->equations();
-  const auto weighOne = [&](Row kind, double &weight) {
+  static const double lowest = 1e-3, highest = 1e3; // of a stated sigma: observations without any noise
+  const auto weighOne = [&](Row kind, double &weight, double most) {
     const std::vector<size_t> rows = rowsOf(kind);
     if (rows.empty()) {
       return;
@@ -308,18 +310,23 @@ bool vpBundleProblem::weigh()
     for (const size_t row : rows) {
       squares += equations.residuals()[row] * equations.residuals()[row];
     }
-    static const double lowest = 1e-3; // of a stated sigma; observations without any noise
     const double before = weight;
-    weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12)), lowest, 1 / lowest);
+    weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12)), lowest, most);
     static const double nearly = 0.03; // a share
     settled = settled && std::abs(std::log(weight / before)) < nearly;
   };
-  weighOne(Row::image, m_imageWeight);
-  weighOne(Row::along, m_stepWeight(0));
-  weighOne(Row::sideways, m_stepWeight(1));
-  weighOne(Row::turn, m_stepWeight(2));
-  weighOne(Row::slip, m_slipWeight);
-  weighOne(Row::rates, m_ratesWeight);
+  weighOne(Row::image, m_imageWeight, highest);
+  weighOne(Row::along, m_stepWeight(0), highest);
+  if (m_rolls) {
+    weighOne(Row::sideways, m_stepWeight(1), 1);
+  } else {
+    m_stepWeight(1) = 1;
+    m_rolls = true;
+    settled = false;
+  }
+  weighOne(Row::turn, m_stepWeight(2), highest);
+  weighOne(Row::slip, m_slipWeight, highest);
+  weighOne(Row::rates, m_ratesWeight, highest);
   return settled;
 }
 

@@ -28,8 +28,11 @@ public:
   vpBundleProblem(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs, const vpVlpRig &prior,
                   const vpLampMap &priorMap, vpBundleStart &start);
 
-  //! Builds the problem of the images still used and solves it. \return False where it comes to no end.
+  //! Builds the problem of the images still used and solves it. \return False where there is no solution.
   bool solve();
+
+  //! Whether the last solution is a minimum, and not just where the iterations ended.
+  bool converged() const { return m_converged; }
 
   //! Weighs images and odometry by what their residuals show. \return Whether the weights were right before.
   bool weigh();
@@ -79,10 +82,14 @@ private:
   std::vector<Eigen::Vector2d> m_slips;             // of the wheels over these, a share
   std::vector<Eigen::Vector2d> m_rates;             // what speed and turn rate are off by within each view
 
-  double m_imageWeight = 1;
+  double m_imageWeight = 0.03; // at first: from a start that is far off, exact images are a long narrow way
   double m_ratesWeight = 1;
   double m_slipWeight = 1;
-  Eigen::Vector3d m_stepWeight = Eigen::Vector3d::Ones();
+  //! Along, sideways, turn. A base that can hardly go sideways comes to no end from a start that is far off:
+  //! at first it may.
+  Eigen::Vector3d m_stepWeight = Eigen::Vector3d(1, 0.02, 1);
+  bool m_rolls = false; // it may no more
+  bool m_converged = false;
 
   std::unique_ptr<ceres::Problem> m_problem;
   std::vector<ceres::ResidualBlockId> m_blocks;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <complex>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <visp3/core/vpPixelMeterConversion.h>
@@ -29,13 +30,13 @@ bool believed(const vpLampBundle &bundle, size_t lamp)
   return std::isfinite(bundle.lampSigma[lamp]);
 }
 
-//! The lamps of a view that are believed, as the solvers want them.
-std::vector<vpLampSight> sightsOf(const vpLampBundle &bundle, const vpLampView &view, const vpVlpRig &rig,
+//! The lamps of a view whose place is known, as the solvers want them.
+std::vector<vpLampSight> sightsOf(const std::vector<bool> &known, const vpLampView &view, const vpVlpRig &rig,
                                   const vpLampMap &map)
 {
   std::vector<vpLampSight> sights;
   for (const vpLampImage &image : view.images) {
-    if (believed(bundle, image.lamp)) {
+    if (known[image.lamp]) {
       vpLampObservation seen;
       seen.point = image.point;
       seen.covariance = image.covariance;
@@ -79,11 +80,17 @@ vpBundleStart::vpBundleStart(const vpLampBundle &bundle, const std::vector<vpLam
     }
   }
   m_placed.assign(views.size(), false);
+  for (size_t k = 0; k < map.lamps.size(); ++k) {
+    m_known.push_back(believed(bundle, k));
+  }
   if (bundle.distance) {
     placeByWheels(runs);
   } else {
-    placeByLamps(bundle, runs);
+    placeByLamps(runs);
     turnHeading(bundle, runs);
+    // From where lamps are known to those beside them, and on.
+    while (placeLamps(bundle, runs) && placeByLamps(runs)) {
+    }
     followWheels(runs);
   }
   dropUnplaced();
@@ -100,18 +107,23 @@ vpBundleStart::vpBundleStart(const vpLampBundle &bundle, const std::vector<vpLam
   followImages(runs);
 }
 
-//! Poses of known places, and of frames that show two believed lamps.
-void vpBundleStart::placeByLamps(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs)
+//! Poses of known places, and of frames that show two lamps that are known. \return Whether there are new
+//! ones.
+bool vpBundleStart::placeByLamps(const std::vector<vpLampRun> &runs)
 {
   const vpManyLampSolver solver;
+  bool any = false;
   for (size_t i = 0; i < views.size(); ++i) {
+    if (m_placed[i]) {
+      continue;
+    }
     const vpLampRun &run = runs[views[i].run];
     std::optional<vpHomogeneousMatrix> wMb;
     if (run.motion == Motion::known) {
       static const double gap = 0.5; // s
       wMb = run.places.at(run.views[views[i].view].timestamp, gap);
     } else {
-      const std::vector<vpLampSight> sights = sightsOf(bundle, run.views[views[i].view], rig, map);
+      const std::vector<vpLampSight> sights = sightsOf(m_known, run.views[views[i].view], rig, map);
       const vpVlpFix fix = sights.size() < 2 ? vpVlpFix() : solver.solve(sights, rig);
       if (fix.valid && !fix.ambiguous) {
         wMb = fix.wMb;
@@ -121,9 +133,10 @@ void vpBundleStart::placeByLamps(const vpLampBundle &bundle, const std::vector<v
       const double yaw = vpRollPitchYaw(*wMb).z();
       const bool follows = i > 0 && m_placed[i - 1] && views[i - 1].run == views[i].run;
       views[i].start = {(*wMb)[0][3], (*wMb)[1][3], follows ? nearestTurn(yaw, views[i - 1].start(2)) : yaw};
-      m_placed[i] = true;
+      m_placed[i] = any = true;
     }
   }
+  return any;
 }
 
 //! All poses by odometry alone, from the map's origin.
@@ -179,6 +192,7 @@ void vpBundleStart::dropUnplaced()
     }
   }
   views = placed;
+  m_placed.assign(views.size(), true);
 }
 
 /*!
@@ -228,25 +242,35 @@ void vpBundleStart::turnHeading(const vpLampBundle &bundle, const std::vector<vp
   }
 }
 
-//! Lamps that are not believed, each where its rays come nearest to each other.
-void vpBundleStart::placeLamps(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs)
+/*!
+  Lamps that are not believed, each where its rays from the poses so far come nearest to each other. \return
+  Whether new ones are known, by rays that come from enough directions.
+*/
+bool vpBundleStart::placeLamps(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs)
 {
   struct Rays {
+    int count = 0;
     Eigen::Matrix3d across = Eigen::Matrix3d::Zero(); // sum of what is across each ray
     Eigen::Vector3d through = Eigen::Vector3d::Zero();
   };
   std::vector<Rays> rays(map.lamps.size());
   const Eigen::Vector3d btc(rig.bMc[0][3], rig.bMc[1][3], rig.bMc[2][3]);
-  for (const vpBundleView &entry : views) {
+  for (size_t i = 0; i < views.size(); ++i) {
+    if (!m_placed[i]) {
+      continue;
+    }
+    const vpBundleView &entry = views[i];
     const Eigen::AngleAxisd wRb(entry.start(2), Eigen::Vector3d::UnitZ());
     const Eigen::Vector3d eye = Eigen::Vector3d(entry.start(0), entry.start(1), 0) + wRb * btc;
     for (const vpLampImage &image : runs[entry.run].views[entry.view].images) {
       const Eigen::Vector3d ray = wRb * rayInBase(image, rig);
       const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
+      ++rays[image.lamp].count;
       rays[image.lamp].across += across;
       rays[image.lamp].through += across * eye;
     }
   }
+  bool any = false;
   for (size_t k = 0; k < rays.size(); ++k) {
     const Rays &own = rays[k];
     const Eigen::Vector3d place = own.across.ldlt().solve(own.through);
@@ -254,8 +278,15 @@ void vpBundleStart::placeLamps(const vpLampBundle &bundle, const std::vector<vpL
     // A lamp seen from one place only keeps the map's word: what is wrong with it comes out in its doubt.
     if (!believed(bundle, k) && place.allFinite() && place.z() > btc.z() && reach < 1000) {
       map.lamps[k].position = place;
+      static const int fewest = 10;         // rays
+      static const double leastAngle = 0.1; // rad, of the rays to their mean, root mean square
+      const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(own.across).eigenvalues()(0);
+      if (!m_known[k] && own.count >= fewest && least > leastAngle * leastAngle * own.count) {
+        m_known[k] = any = true;
+      }
     }
   }
+  return any;
 }
 
 //! Turns and moves all so that the first lamp is where the map has it, and the second in the map's direction.

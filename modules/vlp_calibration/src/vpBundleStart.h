@@ -25,9 +25,9 @@ struct vpBundleView {
 
 /*!
   Where Levenberg-Marquardt starts from: poses of the frames and places of lamps that are not believed. A
-  frame that shows two believed lamps has its pose from these (vpManyLampSolver); others follow from their
-  neighbours along the odometry. Lamps that are not believed are where the rays from these poses come nearest
-  to each other.
+  frame that shows two lamps whose places are known has its pose from these (vpManyLampSolver); a lamp that is
+  not believed is where the rays from such poses come nearest to each other, and is known then. So it goes on
+  from the lamps that are believed; what is left follows its neighbours along the odometry.
 */
 struct vpBundleStart {
   std::string refusal; // one line, where there is no start
@@ -40,16 +40,17 @@ struct vpBundleStart {
                 const vpLampMap &map);
 
 private:
-  void placeByLamps(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs);
+  bool placeByLamps(const std::vector<vpLampRun> &runs);
   void placeByWheels(const std::vector<vpLampRun> &runs);
   void followWheels(const std::vector<vpLampRun> &runs);
   void dropUnplaced();
   void turnHeading(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs);
-  void placeLamps(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs);
+  bool placeLamps(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs);
   void alignToDistance(const vpLampBundle &bundle, const vpLampMap &given);
   void followImages(const std::vector<vpLampRun> &runs);
 
   std::vector<bool> m_placed; // each view
+  std::vector<bool> m_known;  // each lamp whose place is believed, or was found
 };
 
 END_VISP_NAMESPACE

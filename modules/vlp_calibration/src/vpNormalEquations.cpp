@@ -7,7 +7,6 @@
 #include <random>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
 #include <ceres/crs_matrix.h>
 
 BEGIN_VISP_NAMESPACE
@@ -78,7 +77,9 @@ Eigen::MatrixXd vpInverseOf(const Eigen::MatrixXd &information)
 
 double vpNormalEquations::redundancy(const std::vector<size_t> &rows) const
 {
-  const Eigen::SimplicialLDLT<Sparse> factors(kept(m_normal));
+  if (!m_factors) {
+    m_factors = std::make_unique<Eigen::SimplicialLDLT<Sparse>>(kept(m_normal));
+  }
   static const int probes = 6;
   std::mt19937_64 signs(1);
   double taken = 0;
@@ -88,7 +89,7 @@ double vpNormalEquations::redundancy(const std::vector<size_t> &rows) const
       z(static_cast<Eigen::Index>(row)) = (signs() & 1U) != 0 ? 1 : -1;
     }
     const Eigen::VectorXd y = m_jacobian.transpose() * z;
-    taken += y.dot(factors.solve(y)) / probes;
+    taken += y.dot(m_factors->solve(y)) / probes;
   }
   return static_cast<double>(rows.size()) - taken;
 }

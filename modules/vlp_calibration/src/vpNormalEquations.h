@@ -5,8 +5,10 @@
 #ifndef vpNormalEquations_h
 #define vpNormalEquations_h
 
+#include <memory>
 #include <vector>
 
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <ceres/problem.h>
 #include <visp3/vlp_core/vpVlpNamespace.h>
@@ -46,7 +48,8 @@ private:
   using Sparse = Eigen::SparseMatrix<double>;
 
   Sparse m_jacobian;
-  Sparse m_normal; // J^T J
+  Sparse m_normal;                                                  // J^T J
+  mutable std::unique_ptr<Eigen::SimplicialLDLT<Sparse>> m_factors; // of m_normal, once asked for
   Eigen::MatrixXd m_information;
   std::vector<double> m_residuals;
 };
