@@ -181,6 +181,7 @@ vpBundleResult vpBundleProblem::result()
     }
   }
   result.rms = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
+  result.converged = m_converged;
   result.valid = true;
   return result;
 }

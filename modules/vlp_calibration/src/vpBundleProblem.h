@@ -31,9 +31,6 @@ public:
   //! Builds the problem of the images still used and solves it. \return False where there is no solution.
   bool solve();
 
-  //! Whether the last solution is a minimum, and not just where the iterations ended.
-  bool converged() const { return m_converged; }
-
   //! Weighs images and odometry by what their residuals show. \return Whether the weights were right before.
   bool weigh();
 
@@ -88,8 +85,8 @@ private:
   //! Along, sideways, turn. A base that can hardly go sideways comes to no end from a start that is far off:
   //! at first it may.
   Eigen::Vector3d m_stepWeight = Eigen::Vector3d(1, 0.02, 1);
-  bool m_rolls = false; // it may no more
-  bool m_converged = false;
+  bool m_rolls = false;     // it may no more
+  bool m_converged = false; // to a minimum, the last time
 
   std::unique_ptr<ceres::Problem> m_problem;
   std::vector<ceres::ResidualBlockId> m_blocks;

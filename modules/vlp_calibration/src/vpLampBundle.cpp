@@ -35,10 +35,8 @@ vpBundleResult vpLampBundle::solve(const std::vector<vpLampRun> &runs, const vpV
     settled = problem.weigh();
     settled = problem.dropOutliers() == 0 && settled;
   }
-  if (!problem.solve() || !problem.converged()) {
-    result.refusal =
-        "the adjustment comes to no end without the image points that were left out; check that lamps "
-        "and rig are near what the files say, and that the robot is the one that the run is of";
+  if (!problem.solve()) {
+    result.refusal = "the adjustment comes to no end without the image points that were left out";
     return result;
   }
   return problem.result();

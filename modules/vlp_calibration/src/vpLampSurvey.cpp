@@ -130,6 +130,11 @@ vpSurveyResult vpLampSurvey::solve(const std::vector<vpLampRun> &runs, const vpV
     result.bundle.refusal = swapped;
     return result;
   }
+  result.bundle.refusal = vpNoMinimum(result.bundle);
+  if (!result.bundle.refusal.empty()) {
+    result.bundle.valid = false;
+    return result;
+  }
   for (size_t k = 0; k < result.lamps.size(); ++k) {
     if (result.lamps[k].state == State::undetermined || result.lamps[k].state == State::unseen) {
       result.bundle.map.lamps[k] = map.lamps[k];

@@ -112,7 +112,10 @@ vpBundleResult vpMountCalibration::solve(const std::vector<vpLampRun> &runs, con
       open.push_back(names);
     }
   }
-  if (!open.empty()) {
+  if (open.empty()) {
+    result.refusal = vpNoMinimum(result);
+    result.valid = result.refusal.empty();
+  } else {
     result.valid = false;
     result.refusal =
         "the pictures do not tell apart " + listed(open) +

@@ -56,6 +56,14 @@ std::string vpStandsStill(const std::vector<vpTrajectory> &poses)
          " degrees; spin it once round on the spot, then drive a square of half a metre";
 }
 
+std::string vpNoMinimum(const vpBundleResult &result)
+{
+  return result.converged
+             ? ""
+             : "the adjustment comes to no end; check that lamps and rig are near what the files say, "
+               "and that odometry and pictures are of the same run";
+}
+
 std::vector<vpLampRun> vpThinned(const std::vector<vpLampRun> &runs, size_t views)
 {
   std::vector<vpLampRun> thinned;

@@ -23,6 +23,9 @@ std::string vpTooFewViews(const std::vector<vpLampRun> &runs, size_t lamps, size
 //! Whether the robot moved, by where it was found.
 std::string vpStandsStill(const std::vector<vpTrajectory> &poses);
 
+//! Whether the adjustment came to a minimum.
+std::string vpNoMinimum(const vpBundleResult &result);
+
 //! Some of the frames of each run, evenly spread.
 std::vector<vpLampRun> vpThinned(const std::vector<vpLampRun> &runs, size_t views);
 

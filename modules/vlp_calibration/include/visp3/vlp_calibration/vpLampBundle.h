@@ -48,6 +48,7 @@ struct VISP_EXPORT vpOdometryError {
 struct VISP_EXPORT vpBundleResult {
   bool valid = false;
   std::string refusal;                             // one line that says what to do, where not valid
+  bool converged = false;                          // else the iterations ended before a minimum
   vpVlpRig rig;                                    // its sigmas those of rigCovariance
   vpRigVector step = vpRigVector::Zero();          // from the rig that was given
   vpRigMatrix rigCovariance = vpRigMatrix::Zero(); // of the step; 0 where it was held
