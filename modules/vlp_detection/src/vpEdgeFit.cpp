@@ -311,8 +311,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     g = equations.g;
     m_prior = m_model.addPrior(shapeSigma, H, g);
     H.diagonal().array() += 1e-9;
-    if (likely && i < sparse) { // a start that is a little off looks blurred: that the blur is as elsewhere
-                                // is better known
+    if (likely && i < sparse) { // a start that is a little off looks blurred: the blur is held
       H.row(N - 1).setZero();
       H.col(N - 1).setZero();
       H(N - 1, N - 1) = 1;

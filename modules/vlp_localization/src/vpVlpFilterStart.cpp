@@ -1,0 +1,129 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// How vpVlpFilter begins, and begins again.
+
+#include <visp3/vlp_localization/vpVlpFilter.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "vpLampGeometry.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+double square(double x)
+{
+  return x * x;
+}
+} // namespace
+
+void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
+{
+  m_lamps.clear();
+  m_placeSigmas.clear();
+  startFrom(wMb, time);
+}
+
+void vpVlpFilter::restart(const vpHomogeneousMatrix &wMb, double time)
+{
+  startFrom(wMb, time);
+}
+
+//! Starts from a pose, with the lamps that the state has.
+void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
+{
+  // Wide, yet linear: the lamps of the pose follow.
+  static const double place = 0.3, turn = 0.3; // m, rad
+  const vpBasePose pose = vpBasePose::of(wMb);
+  m_started = true;
+  m_time = time;
+  const auto n = lamps + 3 * static_cast<Eigen::Index>(m_lamps.size());
+  m_x.setZero(n);
+  m_x.head<3>() = pose.wtb;
+  m_x(yaw) = std::atan2(pose.wRb(1, 0), pose.wRb(0, 0));
+  m_x(roll) = freeAttitude ? std::atan2(pose.wRb(2, 1), pose.wRb(2, 2)) : 0;
+  m_x(pitch) = freeAttitude ? -std::asin(std::clamp(pose.wRb(2, 0), -1.0, 1.0)) : 0;
+  Eigen::Matrix<double, lamps, 1> sigma = Eigen::Matrix<double, lamps, 1>::Zero();
+  sigma.head<3>().setConstant(place);
+  sigma(yaw) = turn;
+  sigma.segment<2>(roll) =
+      freeAttitude ? Eigen::Vector2d(turn, turn)
+                   : Eigen::Vector2d(m_rig.rotationSigma.head<2>().array().square() + square(m_tiltDoubt))
+                         .cwiseSqrt()
+                         .eval();
+  sigma(speedScale) = odometryScale;
+  sigma(turnScale) = odometryTurnScale;
+  sigma(turnBias) = odometryTurnBias;
+  sigma.segment<3>(mount) = m_rig.translationSigma;
+  sigma(mount + 3) = m_rig.rotationSigma.z();
+  const bool exact = m_tiltDoubt == 0 && m_rig.rotationSigma.isZero(0) && m_rig.translationSigma.isZero(0);
+  const double point = m_rig.principalPointSigma ? *m_rig.principalPointSigma / m_rig.camera.get_px()
+                                                 : (exact ? 0 : principalPoint);
+  sigma.segment<3>(lens) << point, point, m_rig.focalLengthSigma.value_or(exact ? 0 : focalLength);
+  m_P.setZero(n, n);
+  m_P.diagonal().head<lamps>() = sigma.cwiseAbs2();
+  for (size_t k = 0; k < m_lamps.size(); ++k) {
+    m_P.diagonal().segment<3>(lamps + 3 * static_cast<Eigen::Index>(k)).setConstant(square(m_placeSigmas[k]));
+  }
+  static const double steady =
+      0.1; // its first two frames tell whether camera and map are as good as they say
+  m_unrest = steady;
+  forgetVelocity();
+  m_startP = m_P;
+}
+
+void vpVlpFilter::startAgain()
+{
+  const Eigen::Vector3d velocity = m_x.segment<3>(vx);
+  const Eigen::Matrix<double, 6, 1> marked = m_x.segment<6>(mark0);
+  m_x.setZero(m_startP.rows());
+  m_x.head<6>() = marked;
+  m_x.segment<3>(vx) = velocity;
+  m_P = m_startP;
+  const auto started = static_cast<size_t>((m_startP.rows() - lamps) / 3);
+  m_lamps.resize(started);
+  m_placeSigmas.resize(started);
+  m_time = m_markTime;
+}
+
+void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
+{
+  const vpBasePose pose = vpBasePose::of(before.wMb);
+  const double heading = std::atan2(pose.wRb(1, 0), pose.wRb(0, 0));
+  const double turned = std::remainder(m_x(yaw) - heading, 2 * M_PI);
+  const Eigen::Vector2d way = m_x.head<2>() - pose.wtb.head<2>();
+  m_x.segment<2>(vx) = Eigen::Rotation2Dd(-heading - turned / 2) * way / since;
+  m_x(w) = turned / since;
+  // A single frame's pose is as good as its map, and its motion in between need not have been constant.
+  static const double placeSigma = 0.003, turnSigma = 0.005; // m, rad
+  const double place = std::sqrt(std::max(before.covariance(0, 0), before.covariance(1, 1))) + placeSigma,
+               turn = std::sqrt(before.covariance(5, 5)) + turnSigma;
+  for (int i : {vx, vy, w}) {
+    m_P.row(i).setZero();
+    m_P.col(i).setZero();
+    m_P(i, i) = i == w ? square(turn / since) + square(m_unrest * turnAcceleration) * since
+                       : square(place / since) + square(m_unrest * acceleration) * since;
+  }
+  m_startP = m_P;
+}
+
+void vpVlpFilter::doubtClaims()
+{
+  m_tiltDoubt = std::max(claimedTilt, 2 * m_tiltDoubt);
+  m_placeDoubt = std::max(claimedPlace, 2 * m_placeDoubt);
+}
+
+void vpVlpFilter::forgetVelocity()
+{
+  for (int i : {vx, vy, w}) {
+    m_P(i, i) += square(i == w ? startTurnRate : startVelocity);
+  }
+}
+
+END_VISP_NAMESPACE
