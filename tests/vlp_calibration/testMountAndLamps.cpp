@@ -103,6 +103,17 @@ TEST(MountCalibration, AMountThatIsTurnedByARightAngleIsFound)
   EXPECT_NEAR(found.step(at(vpRigParameter::yaw)), 90 * degree, 0.05 * degree);
 }
 
+//! One tick of a wheel turns the base by 0.018 degree, which moves a lamp near the border by 0.1 px.
+TEST(MountCalibration, TicksOfTheWheelsDoNotPassForNoiseOfTheImages)
+{
+  World world = worldOf(usualStep());
+  world.robot.slipSigma = 0;
+  const vpBundleResult found =
+      vpMountCalibration().solve({drive(world, square() + square(), 3)}, rig(), world.map);
+  ASSERT_TRUE(found.valid) << found.refusal;
+  EXPECT_NEAR(found.imageFactor, 1, 0.03); // 1.06 with the ticks as they are read
+}
+
 TEST(MountCalibration, LampsOfOneHeightLeaveThePrincipalPointOpen)
 {
   const World world = worldOf(usualStep(), 0);

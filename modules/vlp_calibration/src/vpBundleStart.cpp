@@ -280,7 +280,8 @@ bool vpBundleStart::placeLamps(const vpLampBundle &bundle, const std::vector<vpL
       map.lamps[k].position = place;
       static const int fewest = 10;         // rays
       static const double leastAngle = 0.1; // rad, of the rays to their mean, root mean square
-      const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(own.across).eigenvalues()(0);
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
+      const double least = spread.computeDirect(own.across, Eigen::EigenvaluesOnly).eigenvalues()(0);
       if (!m_known[k] && own.count >= fewest && least > leastAngle * leastAngle * own.count) {
         m_known[k] = any = true;
       }

@@ -18,6 +18,63 @@ Eigen::Vector2d chordOf(double length, double turn)
   const double chord = std::abs(half) < 1e-9 ? length : length * std::sin(half) / half;
   return {chord * std::cos(half), chord * std::sin(half)};
 }
+
+//! What a parabola through the values about each time says of it, and how far off it these are, rms.
+struct Smoothed {
+  std::vector<double> values, residuals;
+};
+
+//! \param reach s, to either side.
+Smoothed parabolas(const std::vector<double> &times, const std::vector<double> &values, double reach)
+{
+  Smoothed smooth;
+  size_t first = 0, end = 0;
+  for (size_t i = 0; i < times.size(); ++i) {
+    for (; times[first] < times[i] - reach; ++first) {
+    }
+    for (; end < times.size() && times[end] <= times[i] + reach; ++end) {
+    }
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), inverse;
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    double squares = 0;
+    for (size_t k = first; k < end; ++k) {
+      const double t = (times[k] - times[i]) / reach, change = values[k] - values[i];
+      const Eigen::Vector3d row(1, t, t * t);
+      normal += row * row.transpose();
+      right += change * row;
+      squares += change * change;
+    }
+    bool known = false; // fewer than three do not tell one
+    normal.computeInverseWithCheck(inverse, known, 1e-6);
+    const Eigen::Vector3d parabola = known ? Eigen::Vector3d(inverse * right) : Eigen::Vector3d::Zero();
+    smooth.values.push_back(values[i] + parabola(0));
+    smooth.residuals.push_back(
+        std::sqrt(std::max(0.0, squares - parabola.dot(right)) / static_cast<double>(end - first)));
+  }
+  return smooth;
+}
+
+/*!
+  Without the steps of encoders, whose whole ticks are as much in heading as an image point is off by:
+  parabolas over as long as the base moves along one (Savitzky and Golay 1964; how long, by what is usual of
+  the residuals).
+*/
+std::vector<double> smoothed(const std::vector<double> &times, const std::vector<double> &values)
+{
+  std::vector<double> smooth = values;
+  static const double usual = 1.5;                // times the median
+  for (const double reach : {0.04, 0.08, 0.12}) { // s
+    const Smoothed wider = parabolas(times, values, reach);
+    std::vector<double> sorted = wider.residuals;
+    std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+    for (size_t i = 0; i < times.size(); ++i) {
+      if (wider.residuals[i] <= usual * sorted[sorted.size() / 2]) {
+        smooth[i] = wider.values[i];
+      }
+    }
+  }
+  return smooth;
+}
 } // namespace
 
 vpPlanarPose vpAfter(const vpPlanarPose &pose, const vpPlanarStep &step)
@@ -28,17 +85,29 @@ vpPlanarPose vpAfter(const vpPlanarPose &pose, const vpPlanarStep &step)
 
 vpOdometryPath::vpOdometryPath(const std::vector<vpOdometry> &samples)
 {
+  if (samples.empty()) {
+    return;
+  }
+  std::vector<double> times, along(1, 0),
+      heading(1, 0); // s, m, rad; the first sample opens the first interval
   for (const vpOdometry &sample : samples) {
-    if (m_points.empty()) { // opens the first interval
-      m_points.push_back({sample.timestamp, vpPlanarPose::Zero(), 0, 0, 0, 0, 0});
-      continue;
+    if (!times.empty()) {
+      along.push_back(along.back() + sample.v * (sample.timestamp - times.back()));
+      heading.push_back(heading.back() + sample.w * (sample.timestamp - times.back()));
     }
-    Point point = m_points.back();
-    const double dt = sample.timestamp - point.time, length = sample.v * dt, turn = sample.w * dt;
+    times.push_back(sample.timestamp);
+  }
+  along = smoothed(times, along);
+  heading = smoothed(times, heading);
+  m_points.push_back({times[0], {0, 0, heading[0]}, along[0], 0, 0, 0, 0});
+  for (size_t i = 1; i < times.size(); ++i) {
+    const Point &before = m_points.back();
+    const double dt = times[i] - before.time, length = along[i] - before.along,
+                 turn = heading[i] - before.pose(2);
     const Eigen::Vector2d chord = chordOf(length, turn);
-    point.pose = vpAfter(point.pose, {dt, chord.x(), chord.y(), turn, 0, 0, 0});
-    m_points.push_back({sample.timestamp, point.pose, point.along + length, point.length + std::abs(length),
-                        point.turned + std::abs(turn), sample.v, sample.w});
+    m_points.push_back({times[i], vpAfter(before.pose, {dt, chord.x(), chord.y(), turn, 0, 0, 0}), along[i],
+                        before.length + std::abs(length), before.turned + std::abs(turn),
+                        dt > 0 ? length / dt : 0.0, dt > 0 ? turn / dt : 0.0});
   }
 }
 
