@@ -57,7 +57,8 @@ std::vector<Eigen::Vector2d> ellipse(const Eigen::Vector2d &centre, const Eigen:
   if (!covariance.allFinite()) {
     return {};
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(covariance);
   const Eigen::Vector2d variance = axes.eigenvalues();
   if (variance.minCoeff() < -1e-9 * std::abs(variance.maxCoeff())) {
     return {};

@@ -2,11 +2,14 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 #include <visp3/core/vpMeterPixelConversion.h>
 #include <visp3/core/vpPixelMeterConversion.h>
 #include <visp3/vlp_core/vpLampObservation.h>
@@ -57,18 +60,21 @@ vpLampOutline outlineOf(const vpCameraParameters &camera, const Lamp &lamp)
     mean += points.back() / samples;
   }
   const double scale = (points[0] - mean).norm();
-  Eigen::MatrixXd rows(samples, 6);
+  cv::Mat1d rows(samples, 6);
   for (int i = 0; i < samples; ++i) {
     const Vector2d s = (points[static_cast<size_t>(i)] - mean) / scale;
-    rows.row(i) << s.x() * s.x(), s.x() * s.y(), s.y() * s.y(), s.x(), s.y(), 1;
+    const double row[] = {s.x() * s.x(), s.x() * s.y(), s.y() * s.y(), s.x(), s.y(), 1};
+    std::copy(std::begin(row), std::end(row), rows[i]);
   }
-  Eigen::VectorXd q = Eigen::JacobiSVD<Eigen::MatrixXd>(rows, Eigen::ComputeFullV).matrixV().col(5);
+  cv::Mat1d q;
+  cv::SVD::solveZ(rows, q);
   q *= q(0) < 0 ? -1 : 1;
   Eigen::Matrix2d A;
   A << q(0), q(1) / 2, q(1) / 2, q(2);
   const Vector2d centre = -0.5 * A.inverse() * Vector2d(q(3), q(4));
   const double level = centre.dot(A * centre) - q(5);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(A); // ascending: the first is the longer axis
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(A); // ascending: the first is the longer axis
   vpLampOutline outline;
   outline.shape = vpLampOutline::Shape::ellipse;
   outline.centre = mean + scale * centre;

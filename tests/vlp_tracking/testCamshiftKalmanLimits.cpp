@@ -10,17 +10,6 @@ using namespace trackedScenes;
 
 namespace
 {
-void expectFinite(const vpCamshiftKalmanTracker &tracker)
-{
-  for (const double value : {tracker.center().get_u(), tracker.center().get_v(), tracker.window().getWidth(),
-                             tracker.window().getHeight(), tracker.window().getLeft(),
-                             tracker.window().getTop(), tracker.velocity().get_u(),
-                             tracker.velocity().get_v(), tracker.positionSigma(), tracker.similarity()})
-    EXPECT_TRUE(std::isfinite(value));
-  EXPECT_GE(tracker.similarity(), 0);
-  EXPECT_LE(tracker.similarity(), 1);
-}
-
 //! All of the window is inside the picture.
 void expectInside(const vpRect &window, const vpTargetScene &made)
 {

@@ -22,14 +22,6 @@ namespace
 const double noNumber = std::numeric_limits<double>::quiet_NaN(),
              infinite = std::numeric_limits<double>::infinity();
 
-void expectFinite(const vpCamshiftKalmanTracker &tracker)
-{
-  for (const double value : {tracker.center().get_u(), tracker.center().get_v(), tracker.window().getWidth(),
-                             tracker.window().getHeight(), tracker.velocity().get_u(),
-                             tracker.velocity().get_v(), tracker.positionSigma(), tracker.similarity()})
-    ASSERT_TRUE(std::isfinite(value));
-}
-
 //! What a lens cap, a lamp straight ahead, a broken cable and a window blind look like.
 std::vector<std::function<unsigned char(int k, int y, int x)>> strangePictures()
 {

@@ -6,6 +6,7 @@
 #define trackedScenes_h
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -84,6 +85,17 @@ inline Track run(vpTargetTracker &tracker, const vpTargetScene &scene, int frame
     track.similarity.push_back(tracker.similarity());
   }
   return track;
+}
+
+inline void expectFinite(const vpCamshiftKalmanTracker &tracker)
+{
+  for (const double value : {tracker.center().get_u(), tracker.center().get_v(), tracker.window().getWidth(),
+                             tracker.window().getHeight(), tracker.window().getLeft(),
+                             tracker.window().getTop(), tracker.velocity().get_u(),
+                             tracker.velocity().get_v(), tracker.positionSigma(), tracker.similarity()})
+    EXPECT_TRUE(std::isfinite(value));
+  EXPECT_GE(tracker.similarity(), 0);
+  EXPECT_LE(tracker.similarity(), 1);
 }
 } // namespace trackedScenes
 
