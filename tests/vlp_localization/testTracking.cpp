@@ -122,6 +122,26 @@ TEST(Tracking, SecondFrameOfASlowCameraIsAsGoodAsTheNext)
   EXPECT_FALSE(localizer.filter.doubtsClaims());
 }
 
+// Readout of 0.1 s, fine pixels: that lamps show no constant velocity is no fault of the map.
+TEST(Tracking, LongReadoutOfARobotThatAcceleratesDoesNotMakeItDoubtTheMap)
+{
+  Room room;
+  room.camera = {2880, 2400, 2400};
+  const auto circle = [](double t) {
+    return Place{0.1 * std::cos(M_PI * t), 0.1 * std::sin(M_PI * t), 0.02}; // 1 m/s^2
+  };
+  vpVlpLocalizer localizer = room.localizer();
+  for (int k = 0; k < 6; ++k) {
+    const double t = k / 8.0;
+    const vpVlpLocation location = localizer.process(room.frame(t, circle));
+    ASSERT_TRUE(location.fix.valid) << k << ": " << location.fix.refusal;
+    EXPECT_FALSE(localizer.filter.doubtsClaims()) << k;
+    if (k > 0) {
+      EXPECT_LT(errorOf(location.fix, circle(t)), 0.0003) << k;
+    }
+  }
+}
+
 // Faster than any motor: whatever it does, two frames later the pose is as good as before, and map and camera
 // are still believed.
 TEST(Tracking, RobotThatStopsAndTurnsAtOnceIsFollowed)

@@ -197,13 +197,11 @@ double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<s
   vpVlpFilter &alone = m_scratch->alone;
   alone = filter;
   alone.restart(location.fix.wMb, location.timestamp);
-  // Errors of many lamps contradict each other however the robot moves; of few, it may seem to explain them.
-  static const size_t many = 8;
-  static const double manoeuvring = 0.05; // share of its accelerations
+  static const double manoeuvring = 0.05; // share of its accelerations, which a long readout shows
   double chiSquare = 0, degrees = 0;
   for (int round = 0; round < 2; ++round) {
     chiSquare = degrees = 0;
-    alone.calm(usable.size() < many ? 0 : manoeuvring);
+    alone.calm(manoeuvring);
     alone.mark(location.timestamp);
     for (size_t i : inTime(location, usable)) {
       if (lamps[i] != nullptr && location.observations[i].accepted) {
