@@ -12,6 +12,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <map>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -47,11 +49,39 @@ struct Errors {
   std::string name;
   std::vector<double> errors, normalised; // of the unit shown; squared, over the variance stated
   int degrees = 1;                        // of freedom of each
+  std::map<size_t, std::vector<double>>
+      ofSeed; // the latter, where a seed has several, which are not independent
 
   void add(double error, double sigma)
   {
     errors.push_back(std::abs(error));
     normalised.push_back(error * error / (sigma * sigma));
+  }
+  void add(double error, double sigma, size_t seed)
+  {
+    add(error, sigma);
+    ofSeed[seed].push_back(normalised.back());
+  }
+
+  /*!
+    Degrees of freedom of the mean over all: of one value a seed, what they are; of several, those of a
+    chi-square over its degrees that scatters as the seeds' means do.
+  */
+  double allDegrees() const
+  {
+    if (ofSeed.empty()) {
+      return degrees * static_cast<double>(normalised.size());
+    }
+    const auto seeds = static_cast<double>(ofSeed.size());
+    double sum = 0, squares = 0;
+    for (const auto &[seed, values] : ofSeed) {
+      const double mean =
+          std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+      sum += mean;
+      squares += mean * mean;
+    }
+    const double mean = sum / seeds, variance = (squares - sum * mean) / (seeds - 1);
+    return seeds * 2 * mean * mean / variance;
   }
 
   //! Mean squared normalised error beside the interval that holds it 95 times in 100 (Wilson and Hilferty
@@ -63,7 +93,7 @@ struct Errors {
     for (const double value : normalised) {
       mean += value / n;
     }
-    const double all = n * degrees;
+    const double all = allDegrees();
     const auto quantile = [all](double z) {
       return std::pow(1 - 2 / (9 * all) + z * std::sqrt(2 / (9 * all)), 3);
     };
@@ -130,7 +160,7 @@ void shutter(int seeds)
     found[static_cast<size_t>(seed)] = {estimate.valid ? 100 * (estimate.rowTime / truth - 1) : 100,
                                         estimate.valid ? 100 * estimate.rowTimeSigma / truth : 1};
   });
-  Errors errors{"row time, %", {}, {}, 1};
+  Errors errors{"row time, %", {}, {}, 1, {}};
   for (const auto &[error, sigma] : found) {
     errors.add(error, sigma);
   }
@@ -174,7 +204,7 @@ void mount(int seeds, bool slips)
     found[i] = vpMountCalibration().solve({drive(world, spin() + square(), random())}, rig(), world.map);
   });
   std::array<Errors, vpRigParameterCount> errors;
-  Errors joint{"all nine together", {}, {}, vpRigParameterCount};
+  Errors joint{"all nine together", {}, {}, vpRigParameterCount, {}};
   for (size_t i = 0; i < found.size(); ++i) {
     if (!found[i].valid) {
       std::printf("seed %zu: %s\n", i, found[i].refusal.c_str());
@@ -233,7 +263,7 @@ void survey(int seeds, bool slips)
   const double degree = M_PI / 180;
   vpRigVector sigma;
   sigma << 0.0002, 0.0002, 0.0002, 0.001 * degree, 0.001 * degree, 0.01 * degree, 0.03, 0.03, 0.0001;
-  Errors x{"x, mm", {}, {}, 1}, y{"y, mm", {}, {}, 1}, z{"z, mm", {}, {}, 1};
+  Errors x{"x, mm", {}, {}, 1, {}}, y{"y, mm", {}, {}, 1, {}}, z{"z, mm", {}, {}, 1, {}};
   std::vector<vpSurveyResult> found(static_cast<size_t>(seeds));
   vpRunTrials(seeds, [&](int seed, std::mt19937_64 &random) {
     World world;
@@ -254,7 +284,7 @@ void survey(int seeds, bool slips)
     found[static_cast<size_t>(seed)] = lamps.solve({drive(world, laps(), random())}, rig(), claimed);
   });
   const vpLampMap truth = hall();
-  Errors joint{"x, y, z of a lamp together", {}, {}, 3};
+  Errors joint{"x, y, z of a lamp together", {}, {}, 3, {}};
   for (size_t i = 0; i < found.size(); ++i) {
     if (!found[i].bundle.valid) {
       std::printf("seed %zu: %s\n", i, found[i].bundle.refusal.c_str());
@@ -266,10 +296,10 @@ void survey(int seeds, bool slips)
       }
       const Eigen::Vector3d error = found[i].bundle.map.lamps[k].position - truth.lamps[k].position;
       const Eigen::Vector3d own = found[i].lamps[k].sigma;
-      x.add(1000 * error.x(), 1000 * own.x());
-      y.add(1000 * error.y(), 1000 * own.y());
-      z.add(1000 * error.z(), 1000 * own.z());
-      joint.add(std::sqrt(error.dot(found[i].bundle.lampCovariance[k].inverse() * error) / 3), 1);
+      x.add(1000 * error.x(), 1000 * own.x(), i);
+      y.add(1000 * error.y(), 1000 * own.y(), i);
+      z.add(1000 * error.z(), 1000 * own.z(), i);
+      joint.add(std::sqrt(error.dot(found[i].bundle.lampCovariance[k].inverse() * error) / 3), 1, i);
     }
   }
   header(slips ? "lamps, wheels that slip" : "lamps, wheels of wrong size", seeds);

@@ -62,8 +62,8 @@ Smoothed parabolas(const std::vector<double> &times, const std::vector<double> &
 std::vector<double> smoothed(const std::vector<double> &times, const std::vector<double> &values)
 {
   std::vector<double> smooth = values;
-  static const double usual = 1.5;                // times the median
-  for (const double reach : {0.04, 0.08, 0.12}) { // s
+  static const double usual = 1.3;                                // times the median
+  for (const double reach : {0.04, 0.06, 0.09, 0.13, 0.2, 0.3}) { // s
     const Smoothed wider = parabolas(times, values, reach);
     std::vector<double> sorted = wider.residuals;
     std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
