@@ -184,6 +184,22 @@ TEST(Board, IsFoundWhereItIs)
   }
 }
 
+//! As markers are counted, and circles of which a part is found.
+TEST(CameraCalibration, PointsCountedForABoardOfAnotherSizeAreRefusedAsSuch)
+{
+  std::vector<vpBoardSight> seen = sights(vpBoard(), 15, 0.2, 7);
+  for (vpBoardSight &sight : seen) {
+    for (size_t i = 0; i < sight.board.size(); ++i) {
+      const auto column = static_cast<float>(i % 8), row = static_cast<float>(i / 8);
+      sight.board[i] = cv::Point3f(0.025f * column, 0.025f * row, 0);
+    }
+  }
+  const vpCameraEstimate found = vpCameraCalibration().solve(seen, width, height);
+  EXPECT_FALSE(found.valid);
+  EXPECT_NE(found.refusal.find("15 of 15 pictures do not lie as on the board"), std::string::npos)
+      << found.refusal;
+}
+
 TEST(Board, AnotherSizeIsToldByItsName)
 {
   vpBoard other;

@@ -222,6 +222,32 @@ size_t waysOf(const std::vector<vpBoardSight> &sights)
   }
   return ways.size();
 }
+/*!
+  Whether the points lie as on a flat board, but for the lens: those of another size are named wrongly, as
+  ChArUco's markers are counted line by line.
+*/
+bool liesOnItsBoard(const vpBoardSight &sight)
+{
+  static const double most = 0.15; // of the points' spread
+  std::vector<cv::Point2f> board, expected;
+  for (const cv::Point3f &point : sight.board) {
+    board.emplace_back(point.x, point.y);
+  }
+  const cv::Mat homography = cv::findHomography(board, sight.pixels);
+  if (homography.empty()) { // few, or on a line: they tell nothing
+    return true;
+  }
+  cv::perspectiveTransform(board, expected, homography);
+  const cv::Scalar mean = cv::mean(sight.pixels);
+  const cv::Point2f middle(static_cast<float>(mean[0]), static_cast<float>(mean[1]));
+  double off = 0, spread = 0; // px^2
+  for (size_t i = 0; i < expected.size(); ++i) {
+    const cv::Point2f miss = sight.pixels[i] - expected[i], place = sight.pixels[i] - middle;
+    off += miss.dot(miss);
+    spread += place.dot(place);
+  }
+  return off <= most * most * spread;
+}
 } // namespace
 
 bool vpCameraCalibration::fit(const std::vector<vpBoardSight> &sights, unsigned int width,
@@ -294,7 +320,16 @@ vpCameraEstimate vpCameraCalibration::solve(const std::vector<vpBoardSight> &sig
   if (used.size() < fewestViews) {
     estimate.refusal = "too few pictures: " + std::to_string(used.size()) + " of " +
                        std::to_string(sights.size()) + " show the board, expected " +
-                       std::to_string(fewestViews) + " or more, better 15, each from another side";
+                       std::to_string(fewestViews) + " or more, better 15, each from another side" +
+                       (used.empty() ? "; check kind and size of the board" : "");
+    return estimate;
+  }
+  const auto fitting = static_cast<size_t>(std::count_if(used.begin(), used.end(), liesOnItsBoard));
+  if (2 * fitting < used.size()) {
+    estimate.refusal = "the points found in " + std::to_string(used.size() - fitting) + " of " +
+                       std::to_string(used.size()) +
+                       " pictures do not lie as on the board that is stated; count its inner corners along "
+                       "either side, and state its kind and size";
     return estimate;
   }
   static const size_t fewestWays = 3; // Zhang: two of a flat board do, without errors
