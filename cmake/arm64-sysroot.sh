@@ -90,8 +90,11 @@ while IFS= read -r -d '' link; do
   ln -sfn "$(realpath -ms --relative-to="$(dirname "$link")" "$root$(readlink "$link")")" "$link"
 done < <(find "$root" -type l -lname '/*' -print0)
 # What the packages' own scripts would have chosen among alternatives.
-ln -s blas/libblas.so.3 "$libraries/libblas.so.3"
-ln -s lapack/liblapack.so.3 "$libraries/liblapack.so.3"
+for name in libblas liblapack; do
+  for end in so so.3; do
+    ln -s "${name#lib}/$name.$end" "$libraries/$name.$end"
+  done
+done
 # Its libraries' own are named by absolute paths.
 sed -i '/^ *INTERFACE_/ s|/usr/|${_IMPORT_PREFIX}/|g' "$libraries/cmake/visp/VISPModules.cmake"
 for name in libvisp_gui.so libvisp_detection.so libvisp_io.so libopencv_aruco.so libopencv_videoio.so; do
