@@ -4,6 +4,7 @@
  */
 #include "common/vpFrameOptions.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -25,28 +26,45 @@ namespace
 class FirstFrames : public vpFrameSource
 {
 public:
-  FirstFrames(std::unique_ptr<vpFrameSource> source, size_t most) : m_source(std::move(source)), m_left(most)
+  FirstFrames(std::unique_ptr<vpFrameSource> source, size_t most) : m_source(std::move(source)), m_most(most)
   {
   }
 
-  bool next(vpVlpFrame &frame) override { return m_left > 0 && (--m_left, m_source->next(frame)); }
-  size_t size() const override { return m_left; }
+  bool next(vpVlpFrame &frame) override { return m_taken < m_most && (++m_taken, m_source->next(frame)); }
+  size_t size() const override
+  {
+    const size_t all = m_source->size();
+    return all > 0 ? std::min(all, m_most) : m_most;
+  }
   std::string remark() const override { return m_source->remark(); }
 
 private:
   std::unique_ptr<vpFrameSource> m_source;
-  size_t m_left;
+  size_t m_most, m_taken = 0;
 };
+
+std::string notEmpty(const std::string &name)
+{
+  return name.empty() ? "an empty name" : "";
+}
 } // namespace
 
 void vpFrameOptions::add(CLI::App &app)
 {
-  app.add_option("--run", runs, "frames of recorded or simulated runs: DIR/frames.csv")->type_name("DIR");
+  app.add_option("--run", runs,
+                 manyRuns ? "frames of recorded or simulated runs: DIR/frames.csv"
+                          : "frames of a recorded or simulated run: DIR/frames.csv")
+      ->type_name("DIR")
+      ->expected(1, manyRuns ? CLI::detail::expected_max_vector_size : 1)
+      ->check(notEmpty);
   vpAddName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
   app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
   vpAddName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
   camera.add(app);
-  app.add_option("--frames", most, "take as many frames at most (default: all; of a camera 100)")
+  app.add_option("--frames", most,
+                 ofCamera > 0 ? "take as many frames at most (default: all; of a camera " +
+                                    std::to_string(ofCamera) + ")"
+                              : "end after as many frames; default: where they end, or at Ctrl-C")
       ->type_name("N");
 }
 

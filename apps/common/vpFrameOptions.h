@@ -23,9 +23,9 @@ struct vpFrameOptions {
   std::vector<std::string> files;
   std::string video;
   vpCameraOptions camera;
-  size_t most = 0; // frames of each source; 0: all there are, of a camera `ofCamera`
-
-  static constexpr size_t ofCamera = 100;
+  size_t most = 0;       // frames of each source; 0: all there are, of a camera `ofCamera`
+  size_t ofCamera = 100; // likewise; 0: until somebody ends it
+  bool manyRuns = true;
 
   void add(CLI::App &app);
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include <unistd.h>
 
@@ -37,7 +38,8 @@ public:
       : m_options(options), m_rig(vpVlpRig::load(options.rigFile)), m_map(vpLampMap::load(options.lampsFile)),
         m_localizer(options.localizer(m_rig, m_map)),
         m_odometry(options.odometry.empty() ? std::vector<vpOdometry>() : vpReadOdometry(options.odometry)),
-        m_source(options.openFrames(m_rig)), m_outputs(options, m_map, [this] { return windowClosed(); })
+        m_source(std::move(options.frames.open(m_rig).front())),
+        m_outputs(options, m_map, [this] { return windowClosed(); })
   {
   }
 
@@ -48,10 +50,8 @@ public:
     vpProgressBar progress(m_source->size(), !(m_options.posesToStdout() && isatty(STDOUT_FILENO) == 1));
     bool ended = false;
     for (vpLocatedFrame located; !vpInterrupt::requested() && !clicked(); ++located.index) {
-
       try {
-        const bool enough = m_options.frames > 0 && located.index == m_options.frames;
-        if (enough || !m_source->next(located.frame)) {
+        if (!m_source->next(located.frame)) {
           ended = !vpInterrupt::requested(); // which ends the wait for a camera's frame as well
           break;
         }
@@ -131,7 +131,7 @@ private:
     const size_t frames = m_summary.used() + m_summary.bad();
     if (m_summary.used() == 0 && stopped.empty()) { // nothing to write: the outputs stay away
       if (frames != 1) {                            // of one, its own line says all
-        spdlog::error(vpOneLine(m_options.framesName()) +
+        spdlog::error(vpOneLine(m_options.frames.name()) +
                       (frames == 0 ? ": no frames, expected one or more"
                                    : ": none of the " + std::to_string(frames) + " frames could be used"));
       }
@@ -144,7 +144,8 @@ private:
                    std::to_string(frames) + (total == 0 ? "" : " of " + std::to_string(total) + " frames"));
     }
     m_summary.log();
-    if (const std::string remark = m_source->remark(); !m_options.camera.uri.empty() && !remark.empty()) {
+    if (const std::string remark = m_source->remark();
+        !m_options.frames.camera.uri.empty() && !remark.empty()) {
       spdlog::warn(vpOneLine(remark)); // what became of the frames is known by now
     }
     if (const size_t left = m_outputs.posesLeftOut(); left > 0) {

@@ -11,8 +11,6 @@
 
 #include <CLI/CLI.hpp>
 #include <visp3/core/vpException.h>
-#include <visp3/vlp_sensor/vpPictureSequence.h>
-#include <visp3/vlp_sensor/vpVideoSource.h>
 
 #include "common/vpCommandLine.h"
 #include "common/vpProgram.h"
@@ -102,13 +100,9 @@ bool vpLocateOptions::parse(int argc, char **argv)
   std::string attitude = "mount", solver = "all";
   vpAddName(app, "--rig", rigFile, "FILE", "the camera on the robot; default with --run: DIR/rig.yaml");
   vpAddName(app, "--lamps", lampsFile, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
-  vpAddName(app, "--run", run, "DIR", "frames of a recorded or simulated run: DIR/frames.csv");
-  vpAddName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
-  app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
-  vpAddName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
-  camera.add(app);
-  app.add_option("--frames", frames, "end after as many frames; default: where they end, or at Ctrl-C")
-      ->type_name("N");
+  frames.manyRuns = false;
+  frames.ofCamera = 0;
+  frames.add(app);
   app.add_flag("--list-cameras", listCameras,
                "print the cameras that are found, with what they can do, and end");
   vpAddChoice(
@@ -135,12 +129,13 @@ bool vpLocateOptions::parse(int argc, char **argv)
   if (listCameras) {
     return true;
   }
-  noTrack = noTrack || !files.empty() || solver == "two";
+  noTrack = noTrack || !frames.files.empty() || solver == "two";
   freeAttitude = attitude == "free";
   twoLamps = solver == "two";
-  if (!run.empty()) {
-    rigFile = rigFile.empty() ? (fs::path(run) / "rig.yaml").string() : rigFile;
-    lampsFile = lampsFile.empty() ? (fs::path(run) / "lamps.yaml").string() : lampsFile;
+  if (!frames.runs.empty()) {
+    const fs::path run = frames.runs.front();
+    rigFile = rigFile.empty() ? (run / "rig.yaml").string() : rigFile;
+    lampsFile = lampsFile.empty() ? (run / "lamps.yaml").string() : lampsFile;
   }
   check();
   return true;
@@ -148,13 +143,7 @@ bool vpLocateOptions::parse(int argc, char **argv)
 
 void vpLocateOptions::check() const
 {
-  const int sources = (run.empty() ? 0 : 1) + (pattern.empty() ? 0 : 1) + (files.empty() ? 0 : 1) +
-                      (video.empty() ? 0 : 1) + (camera.uri.empty() ? 0 : 1);
-  if (sources != 1) {
-    fail("frames: " + std::string(sources == 0 ? "none" : "more than one source") +
-         ", expected one of --run, --images, --image, --video and --camera (--help explains the options)");
-  }
-  camera.check();
+  frames.check();
   if (rigFile.empty()) {
     fail("--rig: nothing, expected the file of the camera on the robot");
   }
@@ -164,10 +153,12 @@ void vpLocateOptions::check() const
   if (freeAttitude && twoLamps) {
     fail("--attitude: free with --solver two, expected mount: two lamps do not tell roll and pitch");
   }
-  const std::string frames = run.empty() ? std::string() : (fs::path(run) / "frames.csv").string();
   std::vector<std::pair<std::string, std::string>> inputs = {
-      {"--rig", rigFile}, {"--lamps", lampsFile}, {"--run", frames}, {"--video", video}};
-  for (const std::string &file : files) {
+      {"--rig", rigFile}, {"--lamps", lampsFile}, {"--video", frames.video}};
+  for (const std::string &run : frames.runs) {
+    inputs.emplace_back("--run", (fs::path(run) / "frames.csv").string());
+  }
+  for (const std::string &file : frames.files) {
     inputs.emplace_back("--image", file);
   }
   inputs.emplace_back("--odometry", odometry);
@@ -175,33 +166,6 @@ void vpLocateOptions::check() const
     fail("--odometry: " + odometry + " with frames that are located each by itself, expected a sequence");
   }
   refuseClashes(inputs, {{"--poses", poses}, {"--fixes", fixes}, {"--seen", seen}});
-}
-
-std::unique_ptr<vpFrameSource> vpLocateOptions::openFrames(const vpVlpRig &rig) const
-{
-  if (!camera.uri.empty()) {
-    return camera.open(rig);
-  }
-  if (!run.empty()) {
-    return std::make_unique<vpPictureSequence>(vpPictureSequence::fromRun(run));
-  }
-  if (!pattern.empty()) {
-    return std::make_unique<vpPictureSequence>(vpPictureSequence::fromPattern(pattern));
-  }
-  if (!files.empty()) {
-    return std::make_unique<vpPictureSequence>(files);
-  }
-  return std::make_unique<vpVideoSource>(video);
-}
-
-std::string vpLocateOptions::framesName() const
-{
-  for (const std::string &name : {run, pattern, video, camera.uri}) {
-    if (!name.empty()) {
-      return name;
-    }
-  }
-  return files.front();
 }
 
 vpVlpLocalizer vpLocateOptions::localizer(const vpVlpRig &rig, const vpLampMap &map) const

@@ -12,9 +12,8 @@
 #include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
-#include <visp3/vlp_sensor/vpFrameSource.h>
 
-#include "common/vpCameraOptions.h"
+#include "common/vpFrameOptions.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -22,12 +21,7 @@ BEGIN_VISP_NAMESPACE
 struct vpLocateOptions {
   std::string rigFile;
   std::string lampsFile;
-  std::string run;                // a folder; one of these five is given
-  std::string pattern;            // of numbered pictures
-  std::vector<std::string> files; // pictures
-  std::string video;
-  vpCameraOptions camera;
-  size_t frames = 0;        // to take at most; 0: all there are
+  vpFrameOptions frames;
   bool listCameras = false; // and nothing else
   std::string odometry;     // of the robot, a file
   bool noTrack = false;     // each frame by itself
@@ -47,12 +41,6 @@ struct vpLocateOptions {
   {
     return poses.empty() && fixes.empty() && seen.empty() && overlay.empty() && !display;
   }
-
-  //! \throw vpException where the frames cannot be opened.
-  std::unique_ptr<vpFrameSource> openFrames(const vpVlpRig &rig) const;
-
-  //! What the frames were given by, for messages.
-  std::string framesName() const;
 
   //! \throw vpException where \e map can never give what was asked for.
   vpVlpLocalizer localizer(const vpVlpRig &rig, const vpLampMap &map) const;
