@@ -84,7 +84,7 @@ for package in "${packages[@]}"; do
 done
 [ ! -t 1 ] || echo
 
-echo "== 3 of 3: links, and ViSP's package"
+echo "== 3 of 3: links, and the packages of ViSP and Ceres"
 # Absolute links would lead out of the root.
 while IFS= read -r -d '' link; do
   ln -sfn "$(realpath -ms --relative-to="$(dirname "$link")" "$root$(readlink "$link")")" "$link"
@@ -95,8 +95,8 @@ for name in libblas liblapack; do
     ln -s "${name#lib}/$name.$end" "$libraries/$name.$end"
   done
 done
-# Its libraries' own are named by absolute paths.
-sed -i '/^ *INTERFACE_/ s|/usr/|${_IMPORT_PREFIX}/|g' "$libraries/cmake/visp/VISPModules.cmake"
+# What these need is named by absolute paths.
+sed -i '/^ *INTERFACE_/ s|/usr/|${_IMPORT_PREFIX}/|g' "$libraries"/cmake/{visp/VISPModules,Ceres/CeresTargets}.cmake
 for name in libvisp_gui.so libvisp_detection.so libvisp_io.so libopencv_aruco.so libopencv_videoio.so; do
   list="$(qemu-aarch64 -L "$root" "$root/lib/ld-linux-aarch64.so.1" --list "$libraries/$name")"
   if grep 'not found' <<<"$list" >&2; then
