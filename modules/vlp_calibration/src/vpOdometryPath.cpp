@@ -30,7 +30,7 @@ Smoothed parabolas(const std::vector<double> &times, const std::vector<double> &
   Smoothed smooth;
   size_t first = 0, end = 0;
   for (size_t i = 0; i < times.size(); ++i) {
-    for (; times[first] < times[i] - reach; ++first) {
+    for (; first < i && times[first] < times[i] - reach; ++first) {
     }
     for (; end < times.size() && times[end] <= times[i] + reach; ++end) {
     }
@@ -62,8 +62,9 @@ Smoothed parabolas(const std::vector<double> &times, const std::vector<double> &
 std::vector<double> smoothed(const std::vector<double> &times, const std::vector<double> &values)
 {
   std::vector<double> smooth = values;
-  static const double usual = 1.3;                                // times the median
-  for (const double reach : {0.04, 0.06, 0.09, 0.13, 0.2, 0.3}) { // s
+  static const double usual = 1.3;                                    // times the median
+  static const double reaches[] = {0.04, 0.06, 0.09, 0.13, 0.2, 0.3}; // s, to either side
+  for (const double reach : reaches) {
     const Smoothed wider = parabolas(times, values, reach);
     std::vector<double> sorted = wider.residuals;
     std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
@@ -88,8 +89,8 @@ vpOdometryPath::vpOdometryPath(const std::vector<vpOdometry> &samples)
   if (samples.empty()) {
     return;
   }
-  std::vector<double> times, along(1, 0),
-      heading(1, 0); // s, m, rad; the first sample opens the first interval
+  // The first sample opens the first interval.
+  std::vector<double> times, along(1, 0), heading(1, 0); // s, m, rad
   for (const vpOdometry &sample : samples) {
     if (!times.empty()) {
       along.push_back(along.back() + sample.v * (sample.timestamp - times.back()));
