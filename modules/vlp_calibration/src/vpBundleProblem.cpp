@@ -91,9 +91,24 @@ double *vpBundleProblem::slipAt(size_t view, double since)
   return after && (since > 0 || !before) ? m_slips[next].data() : m_slips[view].data();
 }
 
+//! Of the errors of speed (m/s) and turn rate (rad/s) within a view: the more, the more these change.
+Eigen::Vector2d vpBundleProblem::ratesSigma(const vpBundleView &view) const
+{
+  static const double half = 0.04; // s, of a frame
+  Eigen::Vector2d sigma(m_bundle.odometrySpeed, m_bundle.odometryRate);
+  if (m_runs[view.run].motion == Motion::wheels) {
+    const auto before = m_start.paths[view.run].step(view.time - half, view.time),
+               after = m_start.paths[view.run].step(view.time, view.time + half);
+    if (before && after) {
+      sigma += m_bundle.odometryChange / half *
+               Eigen::Vector2d(after->along - before->along, after->turn - before->turn).cwiseAbs();
+    }
+  }
+  return sigma;
+}
+
 void vpBundleProblem::addImages()
 {
-  const Eigen::Vector2d sigma(m_bundle.odometrySpeed, m_bundle.odometryRate);
   for (size_t i = 0; i < m_poses.size(); ++i) {
     const vpBundleView &view = m_start.views[i];
     const std::vector<vpLampImage> &images = m_runs[view.run].views[view.view].images;
@@ -108,7 +123,7 @@ void vpBundleProblem::addImages()
       }
     }
     if (m_problem->HasParameterBlock(m_rates[i].data())) {
-      add(cost<2, 2>(new vpRatesResidual{sigma, &m_ratesWeight}), false, {m_rates[i].data()},
+      add(cost<2, 2>(new vpRatesResidual{ratesSigma(view), &m_ratesWeight}), false, {m_rates[i].data()},
           {Row::rates, Row::rates});
     }
   }

@@ -50,6 +50,7 @@ private:
   };
 
   void build();
+  Eigen::Vector2d ratesSigma(const vpBundleView &view) const;
   void addImages();
   void addMotion();
   void addStep(size_t view);

@@ -106,7 +106,8 @@ public:
   double odometryTurn = 5e-4;   // rad, likewise
   double odometrySpeed = 5e-4;  // m/s, that the speed within a frame may be off by, likewise
   double odometryRate = 5e-3;   // rad/s, that the turn rate within a frame may be off by, likewise
-  double sideways = 1e-7;       // m, likewise; small, since residuals raise it, and hardly ever lower it
+  double odometryChange = 0.1; // of how speed and turn rate change within a frame, beside these two, likewise
+  double sideways = 1e-7;      // m, likewise; small, since residuals raise it, and hardly ever lower it
   /*!
     Distance of the wheels, m, where the odometry's turn rate is theirs: then one difference of their radii
     makes both driftPerTurn and turnPerMetre, and without that a sideways offset of the camera would pass for
