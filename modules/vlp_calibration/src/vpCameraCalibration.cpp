@@ -229,12 +229,16 @@ size_t waysOf(const std::vector<vpBoardSight> &sights)
 bool liesOnItsBoard(const vpBoardSight &sight)
 {
   static const double most = 0.15; // of the points' spread
+  static const size_t fewest = 4;  // points: fewer lie on any board
+  if (sight.pixels.size() < fewest) {
+    return true;
+  }
   std::vector<cv::Point2f> board, expected;
   for (const cv::Point3f &point : sight.board) {
     board.emplace_back(point.x, point.y);
   }
   const cv::Mat homography = cv::findHomography(board, sight.pixels);
-  if (homography.empty()) { // few, or on a line: they tell nothing
+  if (homography.empty()) { // on a line: they tell nothing
     return true;
   }
   cv::perspectiveTransform(board, expected, homography);
