@@ -36,6 +36,7 @@ struct vpPaintedLamp {
   double angle = 0;                     // rad, from u to a, towards v
   std::vector<Eigen::Vector2d> corners; // px, four in order around it: a convex quadrilateral instead
   double amplitude = 150;               // grey levels above the background while lit
+  Eigen::Vector2d fading = {0, 0};      // 1/px, share by which that grows with u and v from the centre
   double frequency = 0;                 // Hz, of repetition
   double phase = 0;                     // periods, at time 0
   std::vector<Pulse> pulses = {{0, 1}}; // lit stretches of each period; default: always lit
@@ -162,6 +163,10 @@ struct vpLampPicture {
       cv::GaussianBlur(mask, mask, cv::Size(size, size), cells * blur, cells * blur, cv::BORDER_CONSTANT);
     }
     cv::resize(mask, mask, box.size(), 0, 0, cv::INTER_AREA); // the mean of each pixel's cells
+    for (int y = 0; y < mask.rows; ++y)
+      for (int x = 0; x < mask.cols; ++x)
+        mask(y, x) *=
+            static_cast<float>(1 + lamp.fading.dot(Eigen::Vector2d(box.x + x, box.y + y) - lamp.centre));
     mask((box & frame) - box.tl()).copyTo(whole(box & frame));
     return whole;
   }

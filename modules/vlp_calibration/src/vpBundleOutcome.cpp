@@ -19,13 +19,12 @@ vpBundleResidual vpBundleProblem::residualOf(size_t view, size_t image)
 {
   const vpBundleView &entry = m_start.views[view];
   const vpLampImage &seen = m_runs[entry.run].views[entry.view].images[image];
-  const vpImageResidual residual(m_start.rig, seen, entry.since[image], m_bundle.wheelSeparation,
-                                 m_imageWeight);
+  const vpImageResidual residual = imageResidual(view, image);
   vpBundleResidual out;
   out.run = entry.run;
   out.view = entry.view;
   out.lamp = seen.lamp;
-  out.point = seen.point;
+  out.point = residual.point;
   out.residual = residual.pixels(m_rig.data(), m_odometry.data(), slipAt(view, entry.since[image].dt),
                                  m_rates[view].data(), m_poses[view].position, &m_poses[view].heading,
                                  m_lamps[seen.lamp].data());
@@ -111,11 +110,24 @@ std::vector<std::string> vpBundleProblem::unseparated()
   return found;
 }
 
+/*!
+  Of what is free. Image points count for no better than stated there: what all of them are off by together
+  is in that, and shows in no residual.
+*/
+Eigen::MatrixXd vpBundleProblem::covariance()
+{
+  const double found = m_imageWeight;
+  m_imageWeight = std::min(found, 1.0);
+  const Eigen::MatrixXd inverse = vpInverseOf(equations().information());
+  m_imageWeight = found;
+  return inverse;
+}
+
 vpBundleResult vpBundleProblem::result()
 {
   vpBundleResult result;
   result.unseparated = unseparated();
-  const Eigen::MatrixXd covariance = vpInverseOf(equations().information());
+  const Eigen::MatrixXd covariance = this->covariance();
 
   result.rig = vpMovedRig(m_start.rig, m_rig);
   result.step = vpRigStep(m_prior, result.rig);

@@ -107,6 +107,28 @@ Eigen::Vector2d vpBundleProblem::ratesSigma(const vpBundleView &view) const
   return sigma;
 }
 
+//! Places the middles of lamps in their outlines as the rig found so far sees these.
+void vpBundleProblem::placeMiddles()
+{
+  const vpVlpRig rig = vpMovedRig(m_start.rig, m_rig);
+  for (vpBundleView &view : m_start.views) {
+    const std::vector<vpLampImage> &images = m_runs[view.run].views[view.view].images;
+    for (size_t k = 0; k < images.size(); ++k) {
+      if (images[k].outline.shape != vpLampOutline::Shape::region) {
+        view.points[k] = images[k].outline.middle(rig.camera, rig.verticalInCamera());
+      }
+    }
+  }
+}
+
+vpImageResidual vpBundleProblem::imageResidual(size_t view, size_t image) const
+{
+  const vpBundleView &entry = m_start.views[view];
+  return vpImageResidual(m_start.rig, entry.points[image],
+                         m_runs[entry.run].views[entry.view].images[image].covariance, entry.since[image],
+                         m_bundle.wheelSeparation, m_imageWeight);
+}
+
 void vpBundleProblem::addImages()
 {
   for (size_t i = 0; i < m_poses.size(); ++i) {
@@ -114,8 +136,7 @@ void vpBundleProblem::addImages()
     const std::vector<vpLampImage> &images = m_runs[view.run].views[view.view].images;
     for (size_t k = 0; k < images.size(); ++k) {
       if (view.used[k]) {
-        add(cost<2, vpRigParameterCount, 5, 2, 2, 2, 1, 3>(new vpImageResidual(
-                m_start.rig, images[k], view.since[k], m_bundle.wheelSeparation, m_imageWeight)),
+        add(cost<2, vpRigParameterCount, 5, 2, 2, 2, 1, 3>(new vpImageResidual(imageResidual(i, k))),
             true,
             {m_rig.data(), m_odometry.data(), slipAt(i, view.since[k].dt), m_rates[i].data(),
              m_poses[i].position, &m_poses[i].heading, m_lamps[images[k].lamp].data()},
@@ -251,6 +272,7 @@ void vpBundleProblem::build()
   m_problem = std::make_unique<ceres::Problem>();
   m_blocks.clear();
   m_rows.clear();
+  placeMiddles();
   addImages();
   addMotion();
   addPriors();

@@ -19,6 +19,8 @@
 
 BEGIN_VISP_NAMESPACE
 
+struct vpImageResidual;
+
 /*!
   The Ceres problem of vpLampBundle, and the values that it moves. Solved, weighed and solved again.
 */
@@ -51,6 +53,8 @@ private:
 
   void build();
   Eigen::Vector2d ratesSigma(const vpBundleView &view) const;
+  void placeMiddles();
+  vpImageResidual imageResidual(size_t view, size_t image) const;
   void addImages();
   void addMotion();
   void addStep(size_t view);
@@ -60,6 +64,7 @@ private:
   void add(ceres::CostFunction *cost, bool robust, const std::vector<double *> &blocks,
            const std::vector<Row> &rows);
   vpNormalEquations equations();
+  Eigen::MatrixXd covariance();
   std::vector<size_t> rowsOf(Row kind) const;
   std::vector<std::string> unseparated();
   vpRigMatrix covarianceOf(const Eigen::MatrixXd &covariance) const;

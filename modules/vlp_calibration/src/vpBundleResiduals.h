@@ -60,7 +60,7 @@ Eigen::Matrix<T, 3, 1> vpTrueStep(const vpPlanarStep &step, const T *odometry,
 //! A lamp's image point against its prediction.
 struct vpImageResidual {
   const vpVlpRig *rig;
-  vpLampImage image;
+  Eigen::Vector2d point;     // px
   vpPlanarStep since;        // from the view's pose to the image's own time
   double separation;         // m, of the wheels
   Eigen::Matrix2d whitening; // 1/px
@@ -68,11 +68,11 @@ struct vpImageResidual {
   Eigen::Vector3d btc;       // m, likewise
   const double *weight;
 
-  vpImageResidual(const vpVlpRig &rigGiven, const vpLampImage &seen, const vpPlanarStep &motion,
-                  double separationOfWheels, const double &weightOfAll)
-      : rig(&rigGiven), image(seen), since(motion), separation(separationOfWheels), weight(&weightOfAll)
+  vpImageResidual(const vpVlpRig &rigGiven, const Eigen::Vector2d &seen, const Eigen::Matrix2d &covariance,
+                  const vpPlanarStep &motion, double separationOfWheels, const double &weightOfAll)
+      : rig(&rigGiven), point(seen), since(motion), separation(separationOfWheels), weight(&weightOfAll)
   {
-    const Eigen::LLT<Eigen::Matrix2d> root(image.covariance.inverse().eval());
+    const Eigen::LLT<Eigen::Matrix2d> root(covariance.inverse().eval());
     whitening = root.matrixU();
     cRb = vpQuaternionOf(rig->bMc).conjugate().toRotationMatrix();
     btc = Eigen::Vector3d(rig->bMc[0][3], rig->bMc[1][3], rig->bMc[2][3]);
@@ -99,7 +99,7 @@ struct vpImageResidual {
     Vector upright;
     ceres::AngleAxisRotatePoint(back, b.data(), upright.data());
     const Vector inCamera = cRb.cast<T>() * upright;
-    const Eigen::Matrix<T, 2, 1> ray = vpPixelRay(rig->camera, image.point, step[6], step[7], step[8]);
+    const Eigen::Matrix<T, 2, 1> ray = vpPixelRay(rig->camera, point, step[6], step[7], step[8]);
     // In pixels of the camera that is looked for: in those of the one given, a longer lens would make errors
     // smaller.
     const T longer = T(1.0) + step[8];

@@ -76,6 +76,9 @@ vpBundleStart::vpBundleStart(const vpLampBundle &bundle, const std::vector<vpLam
       entry.view = v;
       entry.time = view.middle();
       entry.used.assign(view.images.size(), true);
+      for (const vpLampImage &image : view.images) {
+        entry.points.push_back(image.point);
+      }
       views.push_back(entry);
     }
   }

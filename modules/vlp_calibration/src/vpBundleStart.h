@@ -21,6 +21,7 @@ struct vpBundleView {
   vpPlanarPose start;              // of its pose
   std::vector<vpPlanarStep> since; // to each of its images
   std::vector<bool> used;          // each of its images
+  std::vector<Eigen::Vector2d> points; // px, of each of its images, as the rig that was found last has them
 };
 
 /*!

@@ -30,6 +30,7 @@ vpLampView vpLampView::of(double timestamp, const std::string &name,
     image.lamp = static_cast<size_t>(lamp - map.lamps.data());
     image.time = timestamp + seen.time;
     image.point = seen.point;
+    image.outline = seen.outline;
     image.covariance = seen.covariance;
     view.images.push_back(image);
   }

@@ -48,6 +48,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   typename Model::Vector derivative;
   Eigen::Vector2d normal;
   m_model.distance({crossing, (*m_v)[line]}, derivative, normal);
+  const double middle = m_model.centre().x();
   const unsigned char *row = (*m_lines)[line];
   const int n = pixels.to - pixels.from + 1;
   double most = 0, least = 1;
@@ -57,7 +58,9 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   for (int i = pixels.from; i <= pixels.to; ++i) {
     const vpPixelEdge edge =
         vpPixelEdge::at(m_model.distance({(*m_u)[i], (*m_v)[line]}), normal, m_blur, vpEdgeLimits::sharp);
-    const double grey = row[i], share = edge.share, byShift = edge.byShift, byBlur = edge.byBlur;
+    const double light = 1 + m_fading * ((*m_u)[i] - middle);
+    const double grey = row[i], share = light * edge.share, byShift = light * edge.byShift,
+                 byBlur = light * edge.byBlur;
     most = std::max(most, share);
     least = std::min(least, share);
     I += grey;
@@ -86,6 +89,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   BD = centred(BD, B, D);
   const double a = DI / DD;
   end.line = line;
+  end.crossing = crossing - middle;
   end.outward = -derivative;
   end.amplitude = a;
   end.background = (I - a * D) * perPixel;
@@ -110,13 +114,18 @@ void vpEdgeFit<Model>::addAlong(int line, const vpLineStretch &pixels)
   constexpr int one = 0, share = 1, grey = 2, shift = 3, first = 4, all = first + N;
   using Column = Eigen::Matrix<double, all, 1>;
   Eigen::Matrix<double, all, all> sums = Eigen::Matrix<double, all, all>::Zero();
+  const double middle = m_model.centre().x();
   const unsigned char *row = (*m_lines)[line];
   double most = 0, least = 1;
   for (int i = pixels.from; i <= pixels.to; ++i) {
     typename Model::Vector derivative;
     Eigen::Vector2d normal;
     const double d = m_model.distance({(*m_u)[i], (*m_v)[line]}, derivative, normal);
-    const vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur, vpEdgeLimits::sharp);
+    vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur, vpEdgeLimits::sharp);
+    const double light = 1 + m_fading * ((*m_u)[i] - middle);
+    edge.share *= light;
+    edge.byShift *= light;
+    edge.byBlur *= light;
     most = std::max(most, edge.share);
     least = std::min(least, edge.share);
     Column column;
@@ -173,7 +182,7 @@ template <>
 void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to)
 {
   vpEllipseEdges::linesOf(*m_lines, from, to, m_model, m_every, m_litOnly, m_memory->lines, m_memory->light);
-  vpEllipseEdges(*m_lines, *m_v, *m_u, m_aligned, m_model, m_blur, m_reach)
+  vpEllipseEdges(*m_lines, *m_v, *m_u, m_aligned, m_model, m_blur, m_fading, m_reach)
       .find(m_memory->lines, m_memory->ends, m_memory->along);
 }
 
@@ -273,6 +282,28 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   m_kept = sorted.empty() ? 0 : kept / static_cast<double>(sorted.size());
 }
 
+//! How fast the light fades along the lines, by the amplitudes of their two ends, where both show an edge.
+template <class Model>
+double vpEdgeFit<Model>::fadingOfEnds() const
+{
+  static const double scatter = 0.3; // of an end's amplitude about its other's: more, and something hides it
+  const std::vector<End> &ends = m_memory->ends;
+  double slope = 0, weight = 0;
+  for (size_t i = 1; i < ends.size(); ++i) {
+    const End &first = ends[i - 1], &last = ends[i];
+    const double light = 0.5 * (first.amplitude + last.amplitude), more = last.amplitude - first.amplitude,
+                 length = last.crossing - first.crossing;
+    if (first.line == last.line && first.along < 0 && last.along < 0 && first.amplitude > 0 &&
+        last.amplitude > 0 && std::abs(more) < scatter * light) {
+      slope += more * light * length;
+      weight += light * light * length * length;
+    }
+  }
+  static const double most = 0.2; // of the light, over half of the lamp
+  const double limit = most / m_model.radius();
+  return weight > 0 ? std::clamp(m_fading + slope / weight, -limit, limit) : 0;
+}
+
 /*!
   Gauss-Newton from the start model. False where the lamp has no edge to fit: no ends that show one, a blur
   that outgrows any lens, a middle that wanders off or stays unknown.
@@ -329,7 +360,8 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     const typename Model::Vector outlineStep =
         step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
     m_model.advance(outlineStep);
-    const double before = m_blur;
+    const double before = m_blur, fadingBefore = m_fading;
+    m_fading = fadingOfEnds();
     m_blur = std::clamp(before + std::clamp(step(N - 1), -0.5 * before, 0.5 * before), sharpest, widest);
     if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
       return false;
@@ -340,8 +372,9 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
       continue;
     }
     static const double ofBlur = 10; // which moves no edge
+    const double byFading = std::abs(m_fading - fadingBefore) * m_reach * m_reach / 3; // px
     if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < steps.still &&
-        std::abs(m_blur - before) < ofBlur * steps.still) {
+        std::abs(m_blur - before) < ofBlur * steps.still && byFading < steps.still) {
       break;
     }
   }

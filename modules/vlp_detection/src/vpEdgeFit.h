@@ -48,8 +48,9 @@ struct vpLineEnd {
   int along = -1;     // of an edge that runs along the line: index of all its normal equations
   double squares = 0; // sum of squared residuals, grey levels
   int pixels = 0;
-  double amplitude = 0;  // grey levels
+  double amplitude = 0;  // grey levels, of the lamp's middle
   double background = 0; // grey value
+  double crossing = 0;   // px along the line from the outline's middle to its edge there
 
   //! px outwards.
   double offset() const { return shift / std::max(shiftShift, 1e-12); }
@@ -65,7 +66,8 @@ struct vpNormalEquations {
 /*!
   Gauss-Newton fit of an outline to the grey values about the two ends of each lit line: the pixel-integrated
   blurred edge, its blur, and each end's own background and amplitude, so that it does not matter where the
-  stripes lie. Where the outline crosses a line, the edge is taken as straight within its blur for the
+  stripes lie. Light that fades along the lines, as vignetting makes it, would move both ends the same way: how
+  fast it does is what amplitudes of first and last ends say together. Where the outline crosses a line, the edge is taken as straight within its blur for the
   derivatives, not for the distances, so that the minimum is the same.
 */
 template <class Model>
@@ -146,6 +148,7 @@ private:
   void addEnds(int from, int to);
   void findEnds();
   void assemble(Equations &equations);
+  double fadingOfEnds() const;
 
   const cv::Mat_<unsigned char> *m_lines;
   const std::vector<double> *m_v;
@@ -153,6 +156,7 @@ private:
   bool m_aligned; // of the samples
   Model m_model;
   double m_blur = 1.5;
+  double m_fading = 0;    // share of the light in the middle by which it grows along the line, 1/px
   double m_reach = 0;     // px on either side of the edge
   int m_every = 1;        // so many lines are looked at one of, eight at a time
   bool m_litOnly = false; // dark lines are not looked at

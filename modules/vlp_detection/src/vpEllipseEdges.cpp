@@ -77,8 +77,9 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
     const Edge edge =
         sharp ? vpEllipseLanes::sharpEdge(distance, crossing.normalU, crossing.normalV, ellipse.blur)
               : vpEllipseLanes::smoothEdge(distance, ellipse.blur);
-    const Floats i = member * (grey - reference), d = member * edge.share, s = member * edge.byShift,
-                 b = member * edge.byBlur;
+    const Floats light = member * (1 + ellipse.fading * u);
+    const Floats i = member * (grey - reference), d = light * edge.share, s = light * edge.byShift,
+                 b = light * edge.byBlur;
     most = vpLanes::most(most, d);
     least = vpLanes::least(least, vpLanes::select(member > 0, d, all(1)));
     I += i;
@@ -139,15 +140,16 @@ VP_SIMD_CLONES void measure(Touch &touch, const Ellipse &ellipse, bool sharp)
     const Edge edge = sharp ? vpEllipseLanes::sharpEdge(at.distance, at.normalU, at.normalV, ellipse.blur)
                             : vpEllipseLanes::smoothEdge(at.distance, ellipse.blur);
     std::array<Floats, Touch::all> column;
+    const Floats light = member * (1 + ellipse.fading * u);
     column[Touch::one] = member;
-    column[Touch::share] = member * edge.share;
+    column[Touch::share] = light * edge.share;
     column[Touch::grey] = member * (grey - touch.reference);
-    column[Touch::shift] = member * edge.byShift;
+    column[Touch::shift] = light * edge.byShift;
     const std::array<Floats, 5> outward = vpEllipseLanes::outwardAt(at);
     for (size_t p = 0; p < outward.size(); ++p) {
       column[Touch::first + p] = column[Touch::shift] * outward[p];
     }
-    column[Touch::all - 1] = member * edge.byBlur;
+    column[Touch::all - 1] = light * edge.byBlur;
     most = vpLanes::most(most, column[Touch::share]);
     least = vpLanes::least(least, vpLanes::select(member > 0, edge.share, all(1)));
     for (size_t i = 0; i < Touch::all; ++i) {
@@ -271,6 +273,7 @@ void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,
                         static_cast<float>(shape(1, 1)),
                         static_cast<float>(m_model.radius()),
                         static_cast<float>(m_blur),
+                        static_cast<float>(m_fading),
                         static_cast<float>(m_reach),
                         centre.x(),
                         centre.y(),
@@ -351,6 +354,7 @@ void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,
         if (sides[s].pixels[lane] > 0 && found[s].valid[lane] != 0) {
           ends.push_back(endOf(found[s], lane));
           ends.back().line = lineOf(lane);
+          ends.back().crossing = sides[s].crossing[lane];
           ends.back().pixels = sides[s].pixels[lane];
         }
       }

@@ -22,11 +22,13 @@ public:
   using Equations = vpNormalEquations<vpEllipseModel::parameters + 1>;
 
   //! \param v, u Positions of the lines and of the samples, px. \param aligned Each sample lies where its
-  //! number says. \param reach px on either side of the edge.
+  //! number says. \param fading 1/px, share by which the light grows along the line. \param reach px on
+  //! either side of the edge.
   vpEllipseEdges(const cv::Mat_<unsigned char> &lines, const std::vector<double> &v,
                  const std::vector<double> &u, bool aligned, const vpEllipseModel &model, double blur,
-                 double reach)
-      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_reach(reach), m_aligned(aligned)
+                 double fading, double reach)
+      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_fading(fading), m_reach(reach),
+        m_aligned(aligned)
   {
   }
 
@@ -46,7 +48,7 @@ private:
   const cv::Mat_<unsigned char> &m_lines;
   const std::vector<double> &m_v, &m_u;
   const vpEllipseModel &m_model;
-  double m_blur, m_reach;
+  double m_blur, m_fading, m_reach;
   bool m_aligned;
 };
 

@@ -167,12 +167,6 @@ std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter
   return formats;
 }
 
-//! The vertical of a robot that stands level, in the camera's frame.
-Eigen::Vector3d verticalInCamera(const vpHomogeneousMatrix &bMc)
-{
-  return {bMc[2][0], bMc[2][1], bMc[2][2]};
-}
-
 std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
 {
   std::vector<vpImagePoint> corners;
@@ -261,7 +255,7 @@ bool vpLedDetector::glance(const vpImage<unsigned char> &I, vpLampObservation &l
 void vpLedDetector::place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const
 {
   lamp.outline = transposed ? swapped(fit.outline) : fit.outline;
-  lamp.point = lamp.outline.middle(m_rig.camera, verticalInCamera(m_rig.bMc));
+  lamp.point = lamp.outline.middle(m_rig.camera, m_rig.verticalInCamera());
   lamp.covariance = lamp.outline.centreCovariance;
   lamp.time = m_timing.middleAt(transposed ? lamp.point.x() : lamp.point.y());
   lamp.blur = fit.blur;

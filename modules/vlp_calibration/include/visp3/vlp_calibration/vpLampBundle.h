@@ -74,7 +74,9 @@ struct VISP_EXPORT vpBundleResult {
   An image point is predicted at the time of its own line: the pose belongs to the mean time of the frame's
   images, and from there the base moves on as its odometry says, or, without one, as fast as the frames before
   and after show. The residual is that of the solvers, ray = projection of bRc^T (wRb^T (P - wtb) - btc),
-  weighed by the point's covariance. Residuals of the motion: how far the step from frame to frame is off the
+  weighed by the point's covariance. Where a lamp's outline is known, its middle is placed in it anew for each
+  solution: a camera that leans otherwise than the rig said sees the middle of a disc elsewhere in its ellipse,
+  all of them by the same way. Residuals of the motion: how far the step from frame to frame is off the
   odometry's, along the base, sideways and in heading; its constant errors (vpOdometryError) are estimated
   along, and so is the slip of each wheel, which lasts longer than a step (a Gauss-Markov process along its
   way).
@@ -82,8 +84,8 @@ struct VISP_EXPORT vpBundleResult {
   Huber's loss bounds what an outlier does, and points far off are left out in the end. How large the errors
   of image points and odometry truly are is estimated with the rest: variance components (Foerstner 1979),
   each the sum of squares of its residuals over their redundancy, which a stochastic trace estimates
-  (Hutchinson 1990). So the standard deviations hold where a detector or an odometry is better or worse than
-  stated.
+  (Hutchinson 1990). So the standard deviations hold where an odometry is better or worse than stated, and a
+  detector worse; of one that is better they remain: what all images are off by together shows in no residual.
 
   The covariance is the inverse of the information of rig and lamps, the poses eliminated (Schur complement).
 */

@@ -34,6 +34,9 @@ struct VISP_EXPORT vpVlpRig {
   std::optional<double> principalPointSigma; // px of the picture as delivered, of u0 and of v0
   std::optional<double> focalLengthSigma;    // share
 
+  //! The vertical of a robot that stands level, in the camera's frame.
+  Eigen::Vector3d verticalInCamera() const { return {bMc[2][0], bMc[2][1], bMc[2][2]}; }
+
   vpLineTiming lineTiming() const { return vpLineTiming(shutter, resize, width, height); }
 
   //! Where row_time_sigma_s is left out: an uncalibrated row time, this share of it.
