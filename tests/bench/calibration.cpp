@@ -3,8 +3,8 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // Calibration over many rigs: what is recovered, how honest the standard deviations are, what it does to
-// positions. bench_calibration [camera|shutter|mount|lamps|rigs|all] [SEEDS]: rows of Markdown tables; from
-// the top of the repository
+// positions. bench_calibration [camera|shutter|mount|rendered|lamps|rigs|all] [SEEDS]: rows of Markdown
+// tables; from the top of the repository
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <map>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -23,94 +21,20 @@
 #include <visp3/vlp_calibration/vpLampSurvey.h>
 #include <visp3/vlp_calibration/vpMountCalibration.h>
 #include <visp3/vlp_calibration/vpShutterCalibration.h>
+#include <visp3/vlp_detection/vpLedDetector.h>
 #include <visp3/vlp_evaluation/vpDispersion.h>
 #include <visp3/vlp_localization/vpManyLampSolver.h>
 #include <visp3/vlp_simulation/vpSimulation.h>
 
 #include "vlp_calibration/boardPictures.h"
 #include "vlp_calibration/calibrationRun.h"
+#include "vpErrorTable.h"
 #include "vpSimulatedStripes.h"
 
 namespace
 {
 using namespace calibrationRun;
-
-double median(std::vector<double> values)
-{
-  if (values.empty()) {
-    return NAN;
-  }
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-//! Errors of one kind over all seeds, and their standard deviations.
-struct Errors {
-  std::string name;
-  std::vector<double> errors, normalised; // of the unit shown; squared, over the variance stated
-  int degrees = 1;                        // of freedom of each
-  std::map<size_t, std::vector<double>>
-      ofSeed; // the latter, where a seed has several, which are not independent
-
-  void add(double error, double sigma)
-  {
-    errors.push_back(std::abs(error));
-    normalised.push_back(error * error / (sigma * sigma));
-  }
-  void add(double error, double sigma, size_t seed)
-  {
-    add(error, sigma);
-    ofSeed[seed].push_back(normalised.back());
-  }
-
-  /*!
-    Degrees of freedom of the mean over all: of one value a seed, what they are; of several, those of a
-    chi-square over its degrees that scatters as the seeds' means do.
-  */
-  double allDegrees() const
-  {
-    if (ofSeed.empty()) {
-      return degrees * static_cast<double>(normalised.size());
-    }
-    const auto seeds = static_cast<double>(ofSeed.size());
-    double sum = 0, squares = 0;
-    for (const auto &[seed, values] : ofSeed) {
-      const double mean =
-          std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-      sum += mean;
-      squares += mean * mean;
-    }
-    const double mean = sum / seeds, variance = (squares - sum * mean) / (seeds - 1);
-    return seeds * 2 * mean * mean / variance;
-  }
-
-  //! Mean squared normalised error beside the interval that holds it 95 times in 100 (Wilson and Hilferty
-  //! 1931).
-  void print() const
-  {
-    const auto n = static_cast<double>(normalised.size());
-    double mean = 0;
-    for (const double value : normalised) {
-      mean += value / n;
-    }
-    const double all = allDegrees();
-    const auto quantile = [all](double z) {
-      return std::pow(1 - 2 / (9 * all) + z * std::sqrt(2 / (9 * all)), 3);
-    };
-    std::vector<double> sorted = errors;
-    std::sort(sorted.begin(), sorted.end());
-    std::printf("| %s | %.4f | %.4f | %.2f | %.2f to %.2f |\n", name.c_str(), median(errors),
-                sorted[static_cast<size_t>(0.9 * n)], mean, quantile(-1.96), quantile(1.96));
-  }
-};
-
-void header(const std::string &what, int seeds)
-{
-  std::printf(
-      "\n| %s, %d seeds | median error | 90 %% | mean squared normalised error | 95 %% interval of it |\n"
-      "|---|---|---|---|---|\n",
-      what.c_str(), seeds);
-}
+using namespace vpErrorTable;
 
 //! ViSP's model with distortion from 15 pictures of a 9x6 board, corners with a noise of 0.2 px.
 void camera(int seeds)
@@ -187,22 +111,10 @@ vpRigVector drawn(const vpRigVector &sigma, std::mt19937_64 &random)
   return step;
 }
 
-//! Spin and square under lamps of two heights. \param slips Wheels slip by 1 % over 5 cm, too.
-void mount(int seeds, bool slips)
+//! How far what was found is off the true steps from the rigs that were given.
+void printMounts(const std::string &what, const std::vector<vpRigVector> &steps,
+                 const std::vector<vpBundleResult> &found)
 {
-  std::vector<vpRigVector> steps(static_cast<size_t>(seeds));
-  std::vector<vpBundleResult> found(steps.size());
-  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &random) {
-    const auto i = static_cast<size_t>(seed);
-    World world;
-    steps[i] = drawn(spread(), random);
-    world.rig = vpMovedRig(rig(), steps[i]);
-    world.map = lamps(0.2);
-    world.robot = robot(static_cast<std::uint64_t>(seed + 1));
-    world.robot.slipSigma = slips ? 0.01 : 0;
-    world.robot.startX = world.robot.startY = -0.25;
-    found[i] = vpMountCalibration().solve({drive(world, spin() + square(), random())}, rig(), world.map);
-  });
   std::array<Errors, vpRigParameterCount> errors;
   Errors joint{"all nine together", {}, {}, vpRigParameterCount, {}};
   for (size_t i = 0; i < found.size(); ++i) {
@@ -220,11 +132,61 @@ void mount(int seeds, bool slips)
     const double squared = error.dot(found[i].rigCovariance.inverse() * error) / vpRigParameterCount;
     joint.add(std::sqrt(squared), 1);
   }
-  header(slips ? "mount, wheels that slip" : "mount, wheels of wrong size", seeds);
+  header(what, static_cast<int>(found.size()));
   for (const Errors &error : errors) {
     error.print();
   }
   joint.print();
+}
+
+//! Spin and square under lamps of two heights. \param slips Wheels slip by 1 % over 5 cm, too.
+void mount(int seeds, bool slips)
+{
+  std::vector<vpRigVector> steps(static_cast<size_t>(seeds));
+  std::vector<vpBundleResult> found(steps.size());
+  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &random) {
+    const auto i = static_cast<size_t>(seed);
+    World world;
+    steps[i] = drawn(spread(), random);
+    world.rig = vpMovedRig(rig(), steps[i]);
+    world.map = lamps(0.2);
+    world.robot = robot(static_cast<std::uint64_t>(seed + 1));
+    world.robot.slipSigma = slips ? 0.01 : 0;
+    world.robot.startX = world.robot.startY = -0.25;
+    found[i] = vpMountCalibration().solve({drive(world, spin() + square(), random())}, rig(), world.map);
+  });
+  printMounts(slips ? "mount, wheels that slip" : "mount, wheels of wrong size", steps, found);
+}
+
+//! The same from rendered frames: what the detector makes of them, its systematic errors among it.
+void rendered(int seeds)
+{
+  std::vector<vpRigVector> steps(static_cast<size_t>(seeds));
+  std::vector<vpBundleResult> found(steps.size());
+  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &) {
+    const auto i = static_cast<size_t>(seed);
+    vpScenario scenario = vpScenario::load("data/scenarios/calibration.yaml");
+    scenario.deviation = {};
+    scenario.draw.tilt = 0.15 * M_PI / 180;
+    scenario.draw.principalPoint = 3;
+    scenario.draw.focalLength = 0.005;
+    vpSimulatorTurtleBot3Settings wheels = robot(static_cast<std::uint64_t>(seed + 1));
+    wheels.startX = scenario.motion.robot.startX;
+    wheels.startY = scenario.motion.robot.startY;
+    scenario.motion.robot = wheels;
+    vpSimulation simulation(scenario, static_cast<std::uint64_t>(seed + 1));
+    vpLedDetector detector(simulation.rig(), simulation.map());
+    vpLampRun run;
+    for (vpVlpFrame frame; simulation.next(frame);) {
+      detector.detect(frame.I);
+      run.views.push_back(
+          vpLampView::of(frame.timestamp, frame.name, detector.observations(), simulation.map()));
+    }
+    run.odometry = simulation.odometry();
+    steps[i] = vpRigStep(simulation.rig(), simulation.camera().rig);
+    found[i] = vpMountCalibration().solve({run}, simulation.rig(), simulation.map());
+  });
+  printMounts("mount, rendered frames", steps, found);
 }
 
 //! Eight lamps over 2.7 m, of two heights.
@@ -459,6 +421,7 @@ int main(int argc, char **argv)
       {"shutter", shutter},
       {"mount", [](int count) { mount(count, false); }},
       {"mount", [](int count) { mount(count, true); }},
+      {"rendered", rendered},
       {"lamps", [](int count) { survey(count, false); }},
       {"lamps", [](int count) { survey(count, true); }},
       {"rigs", rigs}};

@@ -156,7 +156,8 @@ TEST(MountCalibration, LeanIsNotTakenForThePrincipalPointByTheMiddlesOfDiscs)
   const vpBundleResult found = vpMountCalibration().solve({run}, rig(), world.map);
   ASSERT_TRUE(found.valid) << found.refusal;
   EXPECT_NEAR(found.step(at(vpRigParameter::u0)), step(at(vpRigParameter::u0)), 0.003); // 0.006 and 0.045 px
-  EXPECT_NEAR(found.step(at(vpRigParameter::v0)), step(at(vpRigParameter::v0)), 0.003); // off with middles as rig() has them
+  EXPECT_NEAR(found.step(at(vpRigParameter::v0)), step(at(vpRigParameter::v0)),
+              0.003); // off with middles as rig() has them
 }
 
 TEST(MountCalibration, LampsOfOneHeightLeaveThePrincipalPointOpen)

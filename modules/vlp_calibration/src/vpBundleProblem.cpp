@@ -136,8 +136,7 @@ void vpBundleProblem::addImages()
     const std::vector<vpLampImage> &images = m_runs[view.run].views[view.view].images;
     for (size_t k = 0; k < images.size(); ++k) {
       if (view.used[k]) {
-        add(cost<2, vpRigParameterCount, 5, 2, 2, 2, 1, 3>(new vpImageResidual(imageResidual(i, k))),
-            true,
+        add(cost<2, vpRigParameterCount, 5, 2, 2, 2, 1, 3>(new vpImageResidual(imageResidual(i, k))), true,
             {m_rig.data(), m_odometry.data(), slipAt(i, view.since[k].dt), m_rates[i].data(),
              m_poses[i].position, &m_poses[i].heading, m_lamps[images[k].lamp].data()},
             {Row::image, Row::image});

@@ -16,11 +16,11 @@ BEGIN_VISP_NAMESPACE
 
 //! A view as the bundle adjustment uses it.
 struct vpBundleView {
-  size_t run = 0, view = 0;        // indices into what was given
-  double time = 0;                 // s, of its pose
-  vpPlanarPose start;              // of its pose
-  std::vector<vpPlanarStep> since; // to each of its images
-  std::vector<bool> used;          // each of its images
+  size_t run = 0, view = 0;            // indices into what was given
+  double time = 0;                     // s, of its pose
+  vpPlanarPose start;                  // of its pose
+  std::vector<vpPlanarStep> since;     // to each of its images
+  std::vector<bool> used;              // each of its images
   std::vector<Eigen::Vector2d> points; // px, of each of its images, as the rig that was found last has them
 };
 

@@ -371,7 +371,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
       sparse = i + 1;
       continue;
     }
-    static const double ofBlur = 10; // which moves no edge
+    static const double ofBlur = 10;                                                   // which moves no edge
     const double byFading = std::abs(m_fading - fadingBefore) * m_reach * m_reach / 3; // px
     if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < steps.still &&
         std::abs(m_blur - before) < ofBlur * steps.still && byFading < steps.still) {

@@ -66,9 +66,10 @@ struct vpNormalEquations {
 /*!
   Gauss-Newton fit of an outline to the grey values about the two ends of each lit line: the pixel-integrated
   blurred edge, its blur, and each end's own background and amplitude, so that it does not matter where the
-  stripes lie. Light that fades along the lines, as vignetting makes it, would move both ends the same way: how
-  fast it does is what amplitudes of first and last ends say together. Where the outline crosses a line, the edge is taken as straight within its blur for the
-  derivatives, not for the distances, so that the minimum is the same.
+  stripes lie. Light that fades along the lines, as vignetting makes it, would move both ends the same way:
+  how fast it does is what amplitudes of first and last ends say together. Where the outline crosses a line,
+  the edge is taken as straight within its blur for the derivatives, not for the distances, so that the
+  minimum is the same.
 */
 template <class Model>
 class vpEdgeFit

@@ -75,9 +75,9 @@ struct VISP_EXPORT vpBundleResult {
   images, and from there the base moves on as its odometry says, or, without one, as fast as the frames before
   and after show. The residual is that of the solvers, ray = projection of bRc^T (wRb^T (P - wtb) - btc),
   weighed by the point's covariance. Where a lamp's outline is known, its middle is placed in it anew for each
-  solution: a camera that leans otherwise than the rig said sees the middle of a disc elsewhere in its ellipse,
-  all of them by the same way. Residuals of the motion: how far the step from frame to frame is off the
-  odometry's, along the base, sideways and in heading; its constant errors (vpOdometryError) are estimated
+  solution: a camera that leans otherwise than the rig said sees the middle of a disc elsewhere in its
+  ellipse, all of them by the same way. Residuals of the motion: how far the step from frame to frame is off
+  the odometry's, along the base, sideways and in heading; its constant errors (vpOdometryError) are estimated
   along, and so is the slip of each wheel, which lasts longer than a step (a Gauss-Markov process along its
   way).
 

@@ -18,9 +18,9 @@ BEGIN_VISP_NAMESPACE
 
 //! A lamp's image point.
 struct VISP_EXPORT vpLampImage {
-  size_t lamp = 0;                                      // index into the map
-  double time = 0;                                      // s, of its own line, on the clock of the frames
-  Eigen::Vector2d point = Eigen::Vector2d::Zero();      // px, projection of the lamp's middle
+  size_t lamp = 0;                                 // index into the map
+  double time = 0;                                 // s, of its own line, on the clock of the frames
+  Eigen::Vector2d point = Eigen::Vector2d::Zero(); // px, projection of the lamp's middle
   //! That point is the middle of, to the rig that the detector had; a region: nothing but the point is known.
   vpLampOutline outline;
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // px^2
