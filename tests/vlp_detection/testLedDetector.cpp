@@ -202,7 +202,8 @@ TEST(LedDetector, SteadyLightNeedsNoOutline)
     EXPECT_EQ(seen.outline.shape == vpLampOutline::Shape::region, steady);
     if (!seen.id.empty()) {
       ASSERT_NE(find(with, seen.id), nullptr);
-      EXPECT_LT((find(with, seen.id)->point - seen.point).norm(), 1e-3);
+      static const double still = 0.005; // px, of the last step of a fit: these began otherwise
+      EXPECT_LT((find(with, seen.id)->point - seen.point).norm(), still);
     }
   }
   EXPECT_EQ(boxes, 3);

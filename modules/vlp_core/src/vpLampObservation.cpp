@@ -8,7 +8,8 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <visp3/core/vpMeterPixelConversion.h>
 #include <visp3/core/vpPixelMeterConversion.h>
 
@@ -68,22 +69,21 @@ bool poleInside(const std::array<Eigen::Vector2d, outlineSamples> &points, const
   }
 
   // Centred, scaled coordinates s = (x - mean) / spread: without them the squares drown the constant term.
-  using Vector6d = Eigen::Matrix<double, 6, 1>;
-  Eigen::Matrix<double, 6, 6> products = Eigen::Matrix<double, 6, 6>::Zero();
+  using Vector5d = Eigen::Matrix<double, 5, 1>;
+  Eigen::Matrix<double, 5, 5> products = Eigen::Matrix<double, 5, 5>::Zero();
+  Vector5d sum = Vector5d::Zero();
   for (const Eigen::Vector2d &point : points) {
     const Eigen::Vector2d s = (point - mean) / spread;
-    const Vector6d row = (Vector6d() << s.x() * s.x(), s.x() * s.y(), s.y() * s.y(), s, 1).finished();
+    const Vector5d row = (Vector5d() << s.x() * s.x(), s.x() * s.y(), s.y() * s.y(), s).finished();
     products += row * row.transpose();
+    sum += row;
   }
-  // The points lie on a conic but for rounding and the lens's distortion of one.
-  const Vector6d q =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(products).eigenvectors().col(0);
+  // The points lie on a conic about their mean, row . q = 1, but for rounding and the lens's distortion of
+  // one.
+  const Vector5d q = products.llt().solve(sum);
   Eigen::Matrix3d conic;
-  conic << q(0), q(1) / 2, q(3) / 2, q(1) / 2, q(2), q(4) / 2, q(3) / 2, q(4) / 2, q(5);
-  if (conic(0, 0) < 0) {
-    conic = -conic;
-  }
-  if (!(conic.topLeftCorner<2, 2>().determinant() > 0)) {
+  conic << q(0), q(1) / 2, q(3) / 2, q(1) / 2, q(2), q(4) / 2, q(3) / 2, q(4) / 2, -1;
+  if (!(conic(0, 0) > 0) || !(conic.topLeftCorner<2, 2>().determinant() > 0)) {
     return false;
   }
 

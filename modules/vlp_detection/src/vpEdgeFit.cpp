@@ -48,7 +48,6 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   typename Model::Vector derivative;
   Eigen::Vector2d normal;
   m_model.distance({crossing, (*m_v)[line]}, derivative, normal);
-  const double middle = m_model.centre().x();
   const unsigned char *row = (*m_lines)[line];
   const int n = pixels.to - pixels.from + 1;
   double most = 0, least = 1;
@@ -58,7 +57,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   for (int i = pixels.from; i <= pixels.to; ++i) {
     const vpPixelEdge edge =
         vpPixelEdge::at(m_model.distance({(*m_u)[i], (*m_v)[line]}), normal, m_blur, vpEdgeLimits::sharp);
-    const double light = 1 + m_fading * ((*m_u)[i] - middle);
+    const double light = 1 + m_fading * ((*m_u)[i] - m_middle);
     const double grey = row[i], share = light * edge.share, byShift = light * edge.byShift,
                  byBlur = light * edge.byBlur;
     most = std::max(most, share);
@@ -89,7 +88,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   BD = centred(BD, B, D);
   const double a = DI / DD;
   end.line = line;
-  end.crossing = crossing - middle;
+  end.crossing = crossing - m_middle;
   end.outward = -derivative;
   end.amplitude = a;
   end.background = (I - a * D) * perPixel;
@@ -114,7 +113,6 @@ void vpEdgeFit<Model>::addAlong(int line, const vpLineStretch &pixels)
   constexpr int one = 0, share = 1, grey = 2, shift = 3, first = 4, all = first + N;
   using Column = Eigen::Matrix<double, all, 1>;
   Eigen::Matrix<double, all, all> sums = Eigen::Matrix<double, all, all>::Zero();
-  const double middle = m_model.centre().x();
   const unsigned char *row = (*m_lines)[line];
   double most = 0, least = 1;
   for (int i = pixels.from; i <= pixels.to; ++i) {
@@ -122,7 +120,7 @@ void vpEdgeFit<Model>::addAlong(int line, const vpLineStretch &pixels)
     Eigen::Vector2d normal;
     const double d = m_model.distance({(*m_u)[i], (*m_v)[line]}, derivative, normal);
     vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur, vpEdgeLimits::sharp);
-    const double light = 1 + m_fading * ((*m_u)[i] - middle);
+    const double light = 1 + m_fading * ((*m_u)[i] - m_middle);
     edge.share *= light;
     edge.byShift *= light;
     edge.byBlur *= light;
@@ -319,6 +317,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
   const double radius = m_model.radius();
   const double widest = 0.15 * radius + 1;
   const Eigen::Vector2d start = m_model.centre();
+  m_middle = box.x + 0.5 * (box.width - 1);
   m_blur = std::clamp(blur > 0 ? blur : std::clamp(0.03 * radius, 0.7, 4.0), sharpest, widest);
   const bool likely = blur > 0;
   int sparse = steps.sparse;
@@ -361,7 +360,10 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
         step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
     m_model.advance(outlineStep);
     const double before = m_blur, fadingBefore = m_fading;
-    m_fading = fadingOfEnds();
+    static const double close = 0.3; // px: from farther off amplitudes are not yet the light's
+    if (outlineStep.cwiseAbs().maxCoeff() < close) {
+      m_fading = fadingOfEnds();
+    }
     m_blur = std::clamp(before + std::clamp(step(N - 1), -0.5 * before, 0.5 * before), sharpest, widest);
     if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
       return false;
@@ -374,7 +376,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     static const double ofBlur = 10;                                                   // which moves no edge
     const double byFading = std::abs(m_fading - fadingBefore) * m_reach * m_reach / 3; // px
     if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < steps.still &&
-        std::abs(m_blur - before) < ofBlur * steps.still && byFading < steps.still) {
+        std::abs(m_blur - before) < ofBlur * steps.still && 5 * byFading < steps.still) {
       break;
     }
   }

@@ -50,7 +50,7 @@ struct vpLineEnd {
   int pixels = 0;
   double amplitude = 0;  // grey levels, of the lamp's middle
   double background = 0; // grey value
-  double crossing = 0;   // px along the line from the outline's middle to its edge there
+  double crossing = 0;   // px along the line from the lamp's middle to its edge there
 
   //! px outwards.
   double offset() const { return shift / std::max(shiftShift, 1e-12); }
@@ -157,6 +157,7 @@ private:
   bool m_aligned; // of the samples
   Model m_model;
   double m_blur = 1.5;
+  double m_middle = 0;    // px along the line, of the lamp, about
   double m_fading = 0;    // share of the light in the middle by which it grows along the line, 1/px
   double m_reach = 0;     // px on either side of the edge
   int m_every = 1;        // so many lines are looked at one of, eight at a time

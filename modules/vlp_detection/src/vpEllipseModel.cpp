@@ -10,7 +10,6 @@
 #include <optional>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 BEGIN_VISP_NAMESPACE
@@ -22,6 +21,23 @@ Eigen::Matrix2d rootOf(const Eigen::Matrix2d &A)
 {
   const double det = std::sqrt(std::max(A.determinant(), 1e-24));
   return (A + det * Eigen::Matrix2d::Identity()) / std::sqrt(A.trace() + 2 * det);
+}
+
+//! Eigenvectors of the greatest and of the least eigenvalue, and the greatest.
+struct Eigen3 {
+  Eigen::Vector3d most, least;
+  double value;
+};
+
+//! \param A Symmetric.
+Eigen3 eigenOf(const Eigen::Matrix3d &A)
+{
+  cv::Vec3d values; // descending
+  cv::Matx33d vectors;
+  cv::eigen(cv::Matx33d(A.data()), values, vectors);
+  return {{vectors(0, 0), vectors(0, 1), vectors(0, 2)},
+          {vectors(2, 0), vectors(2, 1), vectors(2, 2)},
+          values(0)};
 }
 
 /*!
@@ -49,9 +65,9 @@ std::optional<Eigen::Matrix<double, 6, 1>> ellipticConic(const Eigen::Matrix3d &
   C << 0, 0, 2, 0, -1, 0, 2, 0, 0;
   const Eigen::Matrix3d half = root.matrixL().solve(C);
   const Eigen::Matrix3d scaled = root.matrixL().solve(Eigen::Matrix3d(half.transpose()));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled);
-  const Eigen::Vector3d a = root.matrixU().solve(Eigen::Vector3d(eigen.eigenvectors().col(2)));
-  if (!(eigen.eigenvalues()(2) > 0)) {
+  const Eigen3 eigen = eigenOf(scaled);
+  const Eigen::Vector3d a = root.matrixU().solve(eigen.most);
+  if (!(eigen.value > 0)) {
     return std::nullopt;
   }
   Eigen::Matrix<double, 6, 1> conic;
@@ -77,7 +93,7 @@ std::optional<vpEllipseModel> circleOf(const std::vector<cv::Point2f> &points)
   const double mean = A.col(0).mean(), scale = 2 * std::sqrt(std::max(mean, 1e-12));
   A.col(0) = (A.col(0).array() - mean) / scale;
   const Eigen::Matrix3d normal = A.transpose() * A;
-  const Eigen::Vector3d p = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normal).eigenvectors().col(0);
+  const Eigen::Vector3d p = eigenOf(normal).least;
   const double p0 = p(0) / scale;
   if (std::abs(p0) < 1e-9) {
     return std::nullopt;
@@ -218,16 +234,12 @@ void vpEllipseModel::advance(const Vector &step)
 double vpEllipseModel::addPrior(double sigma, Eigen::Ref<Eigen::MatrixXd> H,
                                 Eigen::Ref<Eigen::VectorXd> g) const
 {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(m_shape);
-  const double logRatio = std::log(eigen.eigenvalues()(1) / eigen.eigenvalues()(0)); // log(a / b)
-  const Eigen::Vector2d major = eigen.eigenvectors().col(0);
-  const double cos2 = major.x() * major.x() - major.y() * major.y();
-  const double sin2 = 2 * major.x() * major.y();
+  const double logRatio = std::log(axes().x() / axes().y()), twice = 2 * angle();
   const double weight = 1 / (sigma * sigma);
   H(3, 3) += weight;
   H(4, 4) += weight;
-  g(3) -= weight * logRatio * cos2;
-  g(4) -= weight * logRatio * sin2;
+  g(3) -= weight * logRatio * std::cos(twice);
+  g(4) -= weight * logRatio * std::sin(twice);
   return weight * logRatio * logRatio;
 }
 
@@ -266,6 +278,11 @@ Eigen::Vector2d vpEllipseModel::axes() const
   return {1 / (mean - apart), 1 / (mean + apart)};
 }
 
+double vpEllipseModel::angle() const
+{
+  return 0.5 * std::atan2(-2 * m_shape(0, 1), m_shape(1, 1) - m_shape(0, 0));
+}
+
 double vpEllipseModel::radius() const
 {
   return 1 / std::sqrt(std::max(m_shape.determinant(), 1e-12));
@@ -285,10 +302,9 @@ vpLampOutline vpEllipseModel::outline(const Eigen::Ref<const Eigen::MatrixXd> &c
   vpLampOutline outline;
   outline.shape = vpLampOutline::Shape::ellipse;
   outline.centre = m_centre;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(m_shape);
-  outline.a = 1 / eigen.eigenvalues()(0);
-  outline.b = 1 / eigen.eigenvalues()(1);
-  outline.angle = std::atan2(eigen.eigenvectors()(1, 0), eigen.eigenvectors()(0, 0));
+  outline.a = axes().x();
+  outline.b = axes().y();
+  outline.angle = angle();
   outline.centreCovariance = covariance.topLeftCorner<2, 2>();
   return outline;
 }

@@ -56,6 +56,8 @@ public:
   double radius() const;
   //! The longer and the shorter semi-axis, px.
   Eigen::Vector2d axes() const;
+  //! rad, from u to the longer one, towards v.
+  double angle() const;
   Eigen::Vector2d centre() const { return m_centre; }
   //! Symmetric; |shape (x - centre)| = 1 on the outline.
   const Eigen::Matrix2d &shape() const { return m_shape; }
