@@ -75,7 +75,7 @@ cv::Mat_<float> vpLampPicture::coverage(const vpPaintedLamp &lamp) const
   for (int y = 0; y < mask.rows; ++y)
     for (int x = 0; x < mask.cols; ++x)
       mask(y, x) *=
-          static_cast<float>(1 + lamp.fading.dot(Eigen::Vector2d(box.x + x, box.y + y) - lamp.centre));
+          static_cast<float>(1 + lamp.shading.dot(Eigen::Vector2d(box.x + x, box.y + y) - lamp.centre));
   mask((box & frame) - box.tl()).copyTo(whole(box & frame));
   return whole;
 }

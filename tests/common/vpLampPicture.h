@@ -35,7 +35,7 @@ struct vpPaintedLamp {
   double angle = 0;                     // rad, from u to a, towards v
   std::vector<Eigen::Vector2d> corners; // px, four in order around it: a convex quadrilateral instead
   double amplitude = 150;               // grey levels above the background while lit
-  Eigen::Vector2d fading = {0, 0};      // 1/px, share by which that grows with u and v from the centre
+  Eigen::Vector2d shading = {0, 0};     // 1/px, share by which that grows with u and v from the centre
   double frequency = 0;                 // Hz, of repetition
   double phase = 0;                     // periods, at time 0
   std::vector<Pulse> pulses = {{0, 1}}; // lit stretches of each period; default: always lit

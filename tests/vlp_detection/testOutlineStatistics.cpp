@@ -40,7 +40,7 @@ struct Scene {
   double blur = 0; // px
   bool columns = false;
   double squareAngle = -1; // rad, 0 and more: a square
-  double fading = 0;       // 1/px, of the light, to the right and downwards alike
+  double shading = 0;      // 1/px, share by which light falls off to the right and downwards alike
   unsigned int trials = 200;
   unsigned int seed = 1;
 };
@@ -96,7 +96,7 @@ vpLampPicture pictureOf(const Scene &scene, std::mt19937 &generator)
   if (scene.squareAngle >= 0)
     lamp.rectangle(2 * scene.radius, 2 * scene.radius);
   lamp.amplitude = scene.amplitude;
-  lamp.fading = {-scene.fading, -scene.fading};
+  lamp.shading = {-scene.shading, -scene.shading};
   lamp.frequency = 1 / (uniform(scene.periodFrom, scene.periodTo) * picture.rowTime);
   lamp.phase = uniform(0, 1);
   lamp.pwm(uniform(scene.dutyFrom, scene.dutyTo));
@@ -242,14 +242,14 @@ TEST_P(OutlineStatistics, FewNarrowDimStripesAreWithinThreeSigma)
 
 // As near the corner of a lens that darkens with the fourth power of the cosine: without amends the middle
 // along the lines is off by 0.01 to 0.03 px.
-TEST_P(OutlineStatistics, FadingLight)
+TEST_P(OutlineStatistics, LensShading)
 {
-  Scene fading = scene();
-  fading.fading = 0.004;
-  expectAccurate(measure(fading), 0.004, 0.05);
-  fading.squareAngle = M_PI / 6;
-  fading.trials = 100;
-  expectAccurate(measure(fading), 0.008, 0.05);
+  Scene shaded = scene();
+  shaded.shading = 0.004;
+  expectAccurate(measure(shaded), 0.004, 0.05);
+  shaded.squareAngle = M_PI / 6;
+  shaded.trials = 100;
+  expectAccurate(measure(shaded), 0.008, 0.05);
 }
 
 TEST_P(OutlineStatistics, SmallLamp)

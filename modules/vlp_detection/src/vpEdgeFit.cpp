@@ -57,7 +57,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   for (int i = pixels.from; i <= pixels.to; ++i) {
     const vpPixelEdge edge =
         vpPixelEdge::at(m_model.distance({(*m_u)[i], (*m_v)[line]}), normal, m_blur, vpEdgeLimits::sharp);
-    const double light = 1 + m_fading * ((*m_u)[i] - m_middle);
+    const double light = 1 + m_shading * ((*m_u)[i] - m_middle);
     const double grey = row[i], share = light * edge.share, byShift = light * edge.byShift,
                  byBlur = light * edge.byBlur;
     most = std::max(most, share);
@@ -120,7 +120,7 @@ void vpEdgeFit<Model>::addAlong(int line, const vpLineStretch &pixels)
     Eigen::Vector2d normal;
     const double d = m_model.distance({(*m_u)[i], (*m_v)[line]}, derivative, normal);
     vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur, vpEdgeLimits::sharp);
-    const double light = 1 + m_fading * ((*m_u)[i] - m_middle);
+    const double light = 1 + m_shading * ((*m_u)[i] - m_middle);
     edge.share *= light;
     edge.byShift *= light;
     edge.byBlur *= light;
@@ -180,7 +180,7 @@ template <>
 void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to)
 {
   vpEllipseEdges::linesOf(*m_lines, from, to, m_model, m_every, m_litOnly, m_memory->lines, m_memory->light);
-  vpEllipseEdges(*m_lines, *m_v, *m_u, m_aligned, m_model, m_blur, m_fading, m_reach)
+  vpEllipseEdges(*m_lines, *m_v, *m_u, m_aligned, m_model, m_blur, m_shading, m_reach)
       .find(m_memory->lines, m_memory->ends, m_memory->along);
 }
 
@@ -280,9 +280,9 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   m_kept = sorted.empty() ? 0 : kept / static_cast<double>(sorted.size());
 }
 
-//! How fast the light fades along the lines, by the amplitudes of their two ends, where both show an edge.
+//! How fast the light grows along the lines, by the amplitudes of their two ends, where both show an edge.
 template <class Model>
-double vpEdgeFit<Model>::fadingOfEnds() const
+double vpEdgeFit<Model>::shadingOfEnds() const
 {
   static const double scatter = 0.3; // of an end's amplitude about its other's: more, and something hides it
   const std::vector<End> &ends = m_memory->ends;
@@ -299,7 +299,7 @@ double vpEdgeFit<Model>::fadingOfEnds() const
   }
   static const double most = 0.2; // of the light, over half of the lamp
   const double limit = most / m_model.radius();
-  return weight > 0 ? std::clamp(m_fading + slope / weight, -limit, limit) : 0;
+  return weight > 0 ? std::clamp(m_shading + slope / weight, -limit, limit) : 0;
 }
 
 /*!
@@ -359,10 +359,10 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     const typename Model::Vector outlineStep =
         step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
     m_model.advance(outlineStep);
-    const double before = m_blur, fadingBefore = m_fading;
+    const double before = m_blur, shadingBefore = m_shading;
     static const double close = 0.3; // px: from farther off amplitudes are not yet the light's
     if (outlineStep.cwiseAbs().maxCoeff() < close) {
-      m_fading = fadingOfEnds();
+      m_shading = shadingOfEnds();
     }
     m_blur = std::clamp(before + std::clamp(step(N - 1), -0.5 * before, 0.5 * before), sharpest, widest);
     if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
@@ -373,10 +373,10 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
       sparse = i + 1;
       continue;
     }
-    static const double ofBlur = 10;                                                   // which moves no edge
-    const double byFading = std::abs(m_fading - fadingBefore) * m_reach * m_reach / 3; // px
+    static const double ofBlur = 10, ofShading = 0.2; // of a step: blur moves no edge, shading all by as much
+    const double byShading = std::abs(m_shading - shadingBefore) * m_reach * m_reach / 3; // px, about
     if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < steps.still &&
-        std::abs(m_blur - before) < ofBlur * steps.still && 5 * byFading < steps.still) {
+        std::abs(m_blur - before) < ofBlur * steps.still && byShading < ofShading * steps.still) {
       break;
     }
   }

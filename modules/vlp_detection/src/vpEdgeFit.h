@@ -66,8 +66,8 @@ struct vpNormalEquations {
 /*!
   Gauss-Newton fit of an outline to the grey values about the two ends of each lit line: the pixel-integrated
   blurred edge, its blur, and each end's own background and amplitude, so that it does not matter where the
-  stripes lie. Light that fades along the lines, as vignetting makes it, would move both ends the same way:
-  how fast it does is what amplitudes of first and last ends say together. Where the outline crosses a line,
+  stripes lie. Lens shading (vignetting) along the lines would move both ends the same way: how much
+  there is of it is what amplitudes of first and last ends say together. Where the outline crosses a line,
   the edge is taken as straight within its blur for the derivatives, not for the distances, so that the
   minimum is the same.
 */
@@ -149,7 +149,7 @@ private:
   void addEnds(int from, int to);
   void findEnds();
   void assemble(Equations &equations);
-  double fadingOfEnds() const;
+  double shadingOfEnds() const;
 
   const cv::Mat_<unsigned char> *m_lines;
   const std::vector<double> *m_v;
@@ -158,7 +158,7 @@ private:
   Model m_model;
   double m_blur = 1.5;
   double m_middle = 0;    // px along the line, of the lamp, about
-  double m_fading = 0;    // share of the light in the middle by which it grows along the line, 1/px
+  double m_shading = 0;   // share of the light in the middle by which it grows along the line, 1/px
   double m_reach = 0;     // px on either side of the edge
   int m_every = 1;        // so many lines are looked at one of, eight at a time
   bool m_litOnly = false; // dark lines are not looked at

@@ -77,7 +77,7 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
     const Edge edge =
         sharp ? vpEllipseLanes::sharpEdge(distance, crossing.normalU, crossing.normalV, ellipse.blur)
               : vpEllipseLanes::smoothEdge(distance, ellipse.blur);
-    const Floats light = member * (1 + ellipse.fading * u);
+    const Floats light = member * (1 + ellipse.shading * u);
     const Floats i = member * (grey - reference), d = light * edge.share, s = light * edge.byShift,
                  b = light * edge.byBlur;
     most = vpLanes::most(most, d);
@@ -140,7 +140,7 @@ VP_SIMD_CLONES void measure(Touch &touch, const Ellipse &ellipse, bool sharp)
     const Edge edge = sharp ? vpEllipseLanes::sharpEdge(at.distance, at.normalU, at.normalV, ellipse.blur)
                             : vpEllipseLanes::smoothEdge(at.distance, ellipse.blur);
     std::array<Floats, Touch::all> column;
-    const Floats light = member * (1 + ellipse.fading * u);
+    const Floats light = member * (1 + ellipse.shading * u);
     column[Touch::one] = member;
     column[Touch::share] = light * edge.share;
     column[Touch::grey] = member * (grey - touch.reference);
@@ -273,7 +273,7 @@ void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,
                         static_cast<float>(shape(1, 1)),
                         static_cast<float>(m_model.radius()),
                         static_cast<float>(m_blur),
-                        static_cast<float>(m_fading),
+                        static_cast<float>(m_shading),
                         static_cast<float>(m_reach),
                         centre.x(),
                         centre.y(),

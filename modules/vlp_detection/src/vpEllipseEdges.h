@@ -22,12 +22,12 @@ public:
   using Equations = vpNormalEquations<vpEllipseModel::parameters + 1>;
 
   //! \param v, u Positions of the lines and of the samples, px. \param aligned Each sample lies where its
-  //! number says. \param fading 1/px, share by which the light grows along the line. \param reach px on
+  //! number says. \param shading 1/px, share by which the light grows along the line. \param reach px on
   //! either side of the edge.
   vpEllipseEdges(const cv::Mat_<unsigned char> &lines, const std::vector<double> &v,
                  const std::vector<double> &u, bool aligned, const vpEllipseModel &model, double blur,
-                 double fading, double reach)
-      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_fading(fading), m_reach(reach),
+                 double shading, double reach)
+      : m_lines(lines), m_v(v), m_u(u), m_model(model), m_blur(blur), m_shading(shading), m_reach(reach),
         m_aligned(aligned)
   {
   }
@@ -48,7 +48,7 @@ private:
   const cv::Mat_<unsigned char> &m_lines;
   const std::vector<double> &m_v, &m_u;
   const vpEllipseModel &m_model;
-  double m_blur, m_fading, m_reach;
+  double m_blur, m_shading, m_reach;
   bool m_aligned;
 };
 

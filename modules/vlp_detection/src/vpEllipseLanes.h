@@ -26,7 +26,7 @@ using vpLanes::Integers;
 //! Of an ellipse |M x| = 1 about its middle.
 struct Ellipse {
   float uu, uv, vv; // M
-  float radius, blur, fading, reach;
+  float radius, blur, shading, reach;
   double u, v;  // px, its middle
   bool aligned; // samples lie where their numbers say
 };
