@@ -36,6 +36,20 @@ namespace
 using namespace calibrationRun;
 using namespace vpErrorTable;
 
+unsigned int set = 0; // of worlds
+
+//! As vpRunTrials, in worlds of the set. \param trial Is given a number that no other trial of any set has.
+void runTrials(int count, const std::function<void(size_t index, int seed, std::mt19937_64 &)> &trial)
+{
+  static const int most = 100000; // seeds
+  vpRunTrials(
+      count,
+      [&](int index, std::mt19937_64 &generator) {
+        trial(static_cast<size_t>(index), index + most * static_cast<int>(set), generator);
+      },
+      set);
+}
+
 //! ViSP's model with distortion from 15 pictures of a 9x6 board, corners with a noise of 0.2 px.
 void camera(int seeds)
 {
@@ -45,7 +59,7 @@ void camera(int seeds)
   std::array<Errors, 5> errors;
   for (int seed = 0; seed < seeds; ++seed) {
     const vpCameraEstimate found = vpCameraCalibration().solve(
-        boardPictures::sights(vpBoard(), 15, 0.2, static_cast<unsigned int>(1000 + seed)),
+        boardPictures::sights(vpBoard(), 15, 0.2, 1000 + 100000 * set + static_cast<unsigned int>(seed)),
         boardPictures::width, boardPictures::height);
     if (!found.valid) {
       std::printf("seed %d: %s\n", seed, found.refusal.c_str());
@@ -68,7 +82,7 @@ void camera(int seeds)
 void shutter(int seeds)
 {
   std::vector<std::array<double, 2>> found(static_cast<size_t>(seeds));
-  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &) {
+  runTrials(seeds, [&](size_t i, int seed, std::mt19937_64 &) {
     vpScenario scenario = vpScenario::load("data/scenarios/spin.yaml");
     scenario.draw.rowTime = 0.01;
     scenario.frames = 10;
@@ -81,8 +95,8 @@ void shutter(int seeds)
     }
     const vpShutterEstimate estimate = calibration.solve();
     const double truth = simulation.camera().rig.shutter.rowTime;
-    found[static_cast<size_t>(seed)] = {estimate.valid ? 100 * (estimate.rowTime / truth - 1) : 100,
-                                        estimate.valid ? 100 * estimate.rowTimeSigma / truth : 1};
+    found[i] = {estimate.valid ? 100 * (estimate.rowTime / truth - 1) : 100,
+                estimate.valid ? 100 * estimate.rowTimeSigma / truth : 1};
   });
   Errors errors{"row time, %", {}, {}, 1, {}};
   for (const auto &[error, sigma] : found) {
@@ -144,8 +158,7 @@ void mount(int seeds, bool slips)
 {
   std::vector<vpRigVector> steps(static_cast<size_t>(seeds));
   std::vector<vpBundleResult> found(steps.size());
-  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &random) {
-    const auto i = static_cast<size_t>(seed);
+  runTrials(seeds, [&](size_t i, int seed, std::mt19937_64 &random) {
     World world;
     steps[i] = drawn(spread(), random);
     world.rig = vpMovedRig(rig(), steps[i]);
@@ -163,8 +176,7 @@ void rendered(int seeds)
 {
   std::vector<vpRigVector> steps(static_cast<size_t>(seeds));
   std::vector<vpBundleResult> found(steps.size());
-  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &) {
-    const auto i = static_cast<size_t>(seed);
+  runTrials(seeds, [&](size_t i, int seed, std::mt19937_64 &) {
     vpScenario scenario = vpScenario::load("data/scenarios/calibration.yaml");
     scenario.deviation = {};
     scenario.draw.tilt = 0.15 * M_PI / 180;
@@ -227,7 +239,7 @@ void survey(int seeds, bool slips)
   sigma << 0.0002, 0.0002, 0.0002, 0.001 * degree, 0.001 * degree, 0.01 * degree, 0.03, 0.03, 0.0001;
   Errors x{"x, mm", {}, {}, 1, {}}, y{"y, mm", {}, {}, 1, {}}, z{"z, mm", {}, {}, 1, {}};
   std::vector<vpSurveyResult> found(static_cast<size_t>(seeds));
-  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &random) {
+  runTrials(seeds, [&](size_t i, int seed, std::mt19937_64 &random) {
     World world;
     world.rig = vpMovedRig(rig(), drawn(sigma, random));
     world.map = hall();
@@ -243,7 +255,7 @@ void survey(int seeds, bool slips)
     vpLampSurvey lamps;
     lamps.bundle.rigSigma = sigma;
     lamps.measured = {0, 1};
-    found[static_cast<size_t>(seed)] = lamps.solve({drive(world, laps(), random())}, rig(), claimed);
+    found[i] = lamps.solve({drive(world, laps(), random())}, rig(), claimed);
   });
   const vpLampMap truth = hall();
   Errors joint{"x, y, z of a lamp together", {}, {}, 3, {}};
@@ -350,8 +362,8 @@ void rigs(int seeds)
     std::string refusal;
   };
   std::vector<Result> results(static_cast<size_t>(seeds));
-  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &random) {
-    Result &result = results[static_cast<size_t>(seed)];
+  runTrials(seeds, [&](size_t i, int seed, std::mt19937_64 &random) {
+    Result &result = results[i];
     World world;
     world.rig = vpMovedRig(rig(), drawn(sigma, random));
     vpLampMap claimed = lamps(0);
@@ -416,6 +428,7 @@ int main(int argc, char **argv)
 {
   const std::string part = argc > 1 ? argv[1] : "all";
   const int seeds = argc > 2 ? std::max(5, std::atoi(argv[2])) : 50;
+  set = argc > 3 ? static_cast<unsigned int>(std::max(0, std::atoi(argv[3]))) : 0;
   const std::vector<std::pair<std::string, std::function<void(int)>>> parts = {
       {"camera", camera},
       {"shutter", shutter},
