@@ -3,8 +3,8 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // Calibration over many rigs: what is recovered, how honest the standard deviations are, what it does to
-// positions. bench_calibration [camera|shutter|mount|rendered|lamps|rigs|all] [SEEDS]: rows of Markdown
-// tables; from the top of the repository
+// positions. bench_calibration [camera|shutter|mount|rendered|lamps|rigs|all] [SEEDS] [SET]: rows of
+// Markdown tables; from the top of the repository. SET 1, 2, ...: other worlds for the same seeds.
 
 #include <algorithm>
 #include <array>

@@ -57,7 +57,7 @@ void vpEdgeFit<Model>::addCrossing(int line, const vpLineStretch &pixels, double
   for (int i = pixels.from; i <= pixels.to; ++i) {
     const vpPixelEdge edge =
         vpPixelEdge::at(m_model.distance({(*m_u)[i], (*m_v)[line]}), normal, m_blur, vpEdgeLimits::sharp);
-    const double light = 1 + m_shading * ((*m_u)[i] - m_middle);
+    const double light = lightAt(i);
     const double grey = row[i], share = light * edge.share, byShift = light * edge.byShift,
                  byBlur = light * edge.byBlur;
     most = std::max(most, share);
@@ -120,7 +120,7 @@ void vpEdgeFit<Model>::addAlong(int line, const vpLineStretch &pixels)
     Eigen::Vector2d normal;
     const double d = m_model.distance({(*m_u)[i], (*m_v)[line]}, derivative, normal);
     vpPixelEdge edge = vpPixelEdge::at(d, normal, m_blur, vpEdgeLimits::sharp);
-    const double light = 1 + m_shading * ((*m_u)[i] - m_middle);
+    const double light = lightAt(i);
     edge.share *= light;
     edge.byShift *= light;
     edge.byBlur *= light;

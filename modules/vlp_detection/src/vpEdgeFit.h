@@ -150,6 +150,11 @@ private:
   void findEnds();
   void assemble(Equations &equations);
   double shadingOfEnds() const;
+  //! How much brighter lens shading leaves a sample than the lamp's middle, times.
+  double lightAt(int sample) const
+  {
+    return 1 + m_shading * ((*m_u)[static_cast<size_t>(sample)] - m_middle);
+  }
 
   const cv::Mat_<unsigned char> *m_lines;
   const std::vector<double> *m_v;
