@@ -5,7 +5,10 @@
 #ifndef vpBrighter_h
 #define vpBrighter_h
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstring>
 
 #include <opencv2/core/hal/intrin.hpp>
 #include <visp3/vlp_core/vpVlpNamespace.h>
@@ -16,20 +19,28 @@ BEGIN_VISP_NAMESPACE
 namespace vpBrighter
 {
 constexpr int block = 64; // samples
+constexpr int width = cv::v_uint8x16::nlanes;
+
+//! So many samples, fewer than \e width; the rest is black.
+inline cv::v_uint8x16 rest(const unsigned char *row, int samples)
+{
+  std::array<unsigned char, width> values{};
+  std::memcpy(values.data(), row, static_cast<size_t>(samples));
+  return cv::v_load(values.data());
+}
 
 //! Bit i is set where sample i of a block, of which there are so many, is brighter than \e grey.
 inline std::uint64_t mask(const unsigned char *row, int samples, unsigned char grey)
 {
   std::uint64_t bits = 0;
   const cv::v_uint8x16 threshold = cv::v_setall_u8(grey);
-  static constexpr int width = cv::v_uint8x16::nlanes;
   int i = 0;
   for (; i + width <= samples; i += width) {
     const auto part = static_cast<std::uint64_t>(cv::v_signmask(cv::v_load(row + i) > threshold));
     bits |= part << i;
   }
-  for (; i < samples; ++i) {
-    bits |= static_cast<std::uint64_t>(row[i] > grey) << i;
+  if (i < samples) {
+    bits |= static_cast<std::uint64_t>(cv::v_signmask(rest(row + i, samples - i) > threshold)) << i;
   }
   return bits;
 }
@@ -37,10 +48,48 @@ inline std::uint64_t mask(const unsigned char *row, int samples, unsigned char g
 //! Whether any sample of a whole block is.
 inline bool any(const unsigned char *row, unsigned char grey)
 {
-  static constexpr int width = cv::v_uint8x16::nlanes;
   const cv::v_uint8x16 most = cv::v_max(cv::v_max(cv::v_load(row), cv::v_load(row + width)),
                                         cv::v_max(cv::v_load(row + 2 * width), cv::v_load(row + 3 * width)));
   return cv::v_check_any(most > cv::v_setall_u8(grey));
+}
+
+//! How many of so many samples are.
+inline int count(const unsigned char *row, int samples, unsigned char grey)
+{
+  int brighter = 0;
+  for (int x = 0; x < samples; x += block) {
+    brighter += __builtin_popcountll(mask(row + x, std::min(block, samples - x), grey));
+  }
+  return brighter;
+}
+
+//! Sums over samples.
+struct Sums {
+  int all = 0, brighter = 0; // grey levels
+  int samplesBrighter = 0;
+};
+
+//! Of so many samples.
+inline Sums sums(const unsigned char *row, int samples, unsigned char grey)
+{
+  Sums sums;
+  const cv::v_uint8x16 threshold = cv::v_setall_u8(grey);
+  auto add = [&](const cv::v_uint8x16 &values) {
+    sums.all += static_cast<int>(cv::v_reduce_sum(values));
+    const cv::v_uint8x16 brighter = values > threshold;
+    if (const int bits = cv::v_signmask(brighter)) {
+      sums.brighter += static_cast<int>(cv::v_reduce_sum(values & brighter));
+      sums.samplesBrighter += __builtin_popcount(static_cast<unsigned int>(bits));
+    }
+  };
+  int i = 0;
+  for (; i + width <= samples; i += width) {
+    add(cv::v_load(row + i));
+  }
+  if (i < samples) {
+    add(rest(row + i, samples - i));
+  }
+  return sums;
 }
 } // namespace vpBrighter
 

@@ -22,9 +22,46 @@ namespace
 
 const double noFit = 1e6; // px
 
-//! The points no farther than \e nearly from their convex hull.
-std::vector<cv::Point2f> onHull(const std::vector<cv::Point2f> &points, const std::vector<cv::Point2f> &hull,
-                                float nearly)
+using Points = std::vector<cv::Point2f>;
+
+//! The turn from \e a over \e b to \e c, twice the area of their triangle.
+float turn(const cv::Point2f &a, const cv::Point2f &b, const cv::Point2f &c)
+{
+  return (b - a).cross(c - b);
+}
+
+/*!
+  Convex hull of points that come line by line, each line's leftmost first (Andrew 1979): down its left side
+  and up its right one.
+*/
+Points hullOf(const Points &points)
+{
+  Points left, right;
+  auto add = [](Points &side, const cv::Point2f &point, float sign) {
+    while (side.size() > 1 && sign * turn(side[side.size() - 2], side.back(), point) >= 0) {
+      side.pop_back();
+    }
+    side.push_back(point);
+  };
+  for (size_t i = 0; i < points.size();) {
+    size_t end = i + 1;
+    while (end < points.size() && points[end].y == points[i].y) {
+      ++end;
+    }
+    add(left, points[i], 1);
+    add(right, points[end - 1], -1);
+    i = end;
+  }
+  left.insert(left.end(), right.rbegin(), right.rend());
+  left.erase(std::unique(left.begin(), left.end()), left.end());
+  if (left.size() > 1 && left.front() == left.back()) {
+    left.pop_back();
+  }
+  return left;
+}
+
+//! The points, line by line, no farther than \e nearly from their convex hull.
+Points onHull(const Points &points, const Points &hull, float nearly)
 {
   struct Side {
     cv::Point2f from, normal;
@@ -37,21 +74,22 @@ std::vector<cv::Point2f> onHull(const std::vector<cv::Point2f> &points, const st
       sides.push_back({hull[i], cv::Point2f(-side.y, side.x) / length});
     }
   }
-  std::vector<cv::Point2f> outer;
+  Points outer;
   if (sides.empty()) {
     return outer;
   }
-  // Points come line by line, first and last end by turns: the side of the last but one is likely the next
-  // one's.
-  std::array<size_t, 2> likely{};
+  // First and last end by turns, one down the hull, the other up: the side of the last but one is likely the
+  // next one's, or that after it.
+  std::array<size_t, 2> likely{0, sides.size() - 1};
   for (size_t k = 0; k < points.size(); ++k) {
     size_t &begin = likely[k % 2];
-    for (size_t tried = 0, i = begin; tried < sides.size(); ++tried, i = i + 1 < sides.size() ? i + 1 : 0) {
+    for (size_t tried = 0, i = begin; tried < sides.size(); ++tried) {
       if (std::abs(sides[i].normal.dot(points[k] - sides[i].from)) <= nearly) {
         outer.push_back(points[k]);
         begin = i;
         break;
       }
+      i = k % 2 == 0 ? (i + 1) % sides.size() : (i > 0 ? i : sides.size()) - 1;
     }
   }
   return outer;
@@ -64,35 +102,101 @@ int reachOf(const vpLedRoi &roi)
 }
 
 /*!
-  Which lines are lit about as brightly as the brightest near them. Others are lit for a part of their
-  exposure: an edge that is not quite sharp sinks below the level nearer to the middle there.
+  How the light falls off at the ends of the chords.
+  \param[out] light Mean of each chord, above the background.
 */
-std::vector<bool> fullyLit(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark)
+vpChordShape::Edge edgeOf(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark,
+                          std::vector<float> &light)
 {
-  static const double full = 0.7;
-  const int near = 2 + roi.box.height / 8; // lines
-  std::vector<double> light;
+  vpChordShape::Edge edge;
+  const int reach = reachOf(roi);
+  std::array<int, 256> differences{}; // of neighbours, along the lines
+  int pairs = 0;
+  int count = 0;
+  double sum = 0;
+  light.clear();
   light.reserve(roi.chords.size());
   for (const vpLedChord &chord : roi.chords) {
+    const unsigned char *row = lines[chord.line];
     const int step = 1 + (chord.last - chord.first) / 32;
-    double sum = 0;
-    int count = 0;
-    for (int x = chord.first; x <= chord.last; x += step) {
-      sum += lines(chord.line, x);
+    int ofChord = 0, samples = 0;
+    for (int x = chord.first; x < chord.last; x += step) {
+      ofChord += row[x];
+      ++differences[static_cast<size_t>(std::abs(row[x + 1] - row[x]))];
+      ++samples;
+    }
+    sum += ofChord;
+    pairs += samples;
+    const double mean = samples > 0 ? static_cast<double>(ofChord) / samples : row[chord.first];
+    light.push_back(static_cast<float>(mean - dark));
+    for (int side = -1; side <= 1; side += 2) {
+      const int end = side < 0 ? chord.first : chord.last;
+      const int in = end - side * reach;
+      const int out = end + side * reach;
+      if (out < 0 || out >= lines.cols || in < chord.first || in > chord.last) {
+        continue;
+      }
+      edge.step += row[in] - row[out];
+      edge.inside += row[in] - dark;
       ++count;
     }
-    light.push_back(sum / count - dark);
   }
+  edge.ends = count;
+  edge.light = pairs > 0 ? sum / pairs - dark : 0;
+  if (count > 0) {
+    edge.step /= count;
+    edge.inside /= count;
+  }
+  // The median of |difference| of two Gaussian pixels is 0.954 sigma; it comes in whole grey levels, so
+  // interpolate.
+  int fewer = 0;
+  for (size_t d = 0; d < differences.size() && pairs > 0; ++d) {
+    if (2 * (fewer + differences[d]) > pairs) {
+      const double within = (0.5 * pairs - fewer) / differences[d];
+      edge.noise = std::max(0.0, (d - 0.5 + within) / 0.954);
+      break;
+    }
+    fewer += differences[d];
+  }
+  return edge;
+}
+
+//! The most of \e values within \e near of each place, by the largest of those still ahead (Lemire 2006).
+std::vector<float> mostNear(const std::vector<float> &values, size_t near)
+{
+  std::vector<float> most(values.size());
+  std::vector<size_t> falling(values.size()); // places of which each has more than the next
+  size_t first = 0, last = 0, taken = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    for (; taken < values.size() && taken <= i + near; ++taken) {
+      while (last > first && values[falling[last - 1]] <= values[taken]) {
+        --last;
+      }
+      falling[last++] = taken;
+    }
+    while (falling[first] + near < i) {
+      ++first;
+    }
+    most[i] = values[falling[first]];
+  }
+  return most;
+}
+
+/*!
+  Which chords are lit about as brightly as the brightest near them. Others are lit for a part of their
+  exposure: an edge that is not quite sharp sinks below the level nearer to the middle there.
+*/
+std::vector<bool> fullyLit(const vpLedRoi &roi, const std::vector<float> &light)
+{
+  static const float full = 0.7f;
+  std::vector<float> ofLines(static_cast<size_t>(roi.box.height), 0);
+  for (size_t i = 0; i < light.size(); ++i) {
+    ofLines[static_cast<size_t>(roi.chords[i].line - roi.box.y)] = light[i];
+  }
+  const std::vector<float> brightest = mostNear(ofLines, static_cast<size_t>(2 + roi.box.height / 8));
   std::vector<bool> lit(light.size());
   for (size_t i = 0; i < light.size(); ++i) {
-    double brightest = light[i];
-    for (size_t j = i; j-- > 0 && roi.chords[i].line - roi.chords[j].line <= near;) {
-      brightest = std::max(brightest, light[j]);
-    }
-    for (size_t j = i + 1; j < light.size() && roi.chords[j].line - roi.chords[i].line <= near; ++j) {
-      brightest = std::max(brightest, light[j]);
-    }
-    lit[i] = light[i] >= full * brightest;
+    lit[i] = light[i] >= full * brightest[static_cast<size_t>(roi.chords[i].line - roi.box.y)];
   }
   return lit;
 }
@@ -171,9 +275,9 @@ double roundness(const vpLedRoi &roi)
                   1.6 * std::min(roi.box.width, roi.box.height) / std::max(roi.box.width, roi.box.height));
 }
 
-std::vector<cv::Point2f> endsOf(const std::vector<vpLedChord> &chords, int first, int last)
+Points endsOf(const std::vector<vpLedChord> &chords, int first, int last)
 {
-  std::vector<cv::Point2f> points;
+  Points points;
   points.reserve(2 * chords.size());
   for (const vpLedChord &chord : chords) {
     if (chord.first > first) {
@@ -227,13 +331,11 @@ std::vector<cv::Point2f> vpChordShape::ends(const vpLedRoi &roi, int samples)
 
 std::vector<cv::Point2f> vpChordShape::outerEnds(const vpLedRoi &roi, int samples)
 {
-  const std::vector<cv::Point2f> points = ends(roi, samples);
+  const Points points = ends(roi, samples);
   if (points.size() < 3) {
     return points;
   }
-  std::vector<cv::Point2f> hull;
-  cv::convexHull(points, hull);
-  return onHull(points, hull, 0.7f + 0.01f * static_cast<float>(std::max(roi.box.width, roi.box.height)));
+  return onHull(points, hullOf(points), 0.7f + 0.01f * static_cast<float>(std::max(roi.box.width, roi.box.height)));
 }
 
 double vpChordShape::ellipseMisfit(const std::vector<cv::Point2f> &points, const cv::Rect &box)
@@ -283,32 +385,37 @@ vpChordShape::Score vpChordShape::score(const vpLedRoi &roi, const cv::Mat_<unsi
 {
   Score score;
   score.shortfall.assign(roi.chords.size(), 0);
-  score.edge = edge(roi, lines, dark);
+  std::vector<float> light;
+  score.edge = edgeOf(roi, lines, dark, light);
   if (roi.box.width < 4 || roi.box.height < 3) {
     return score;
   }
   const std::vector<vpLedChord> &chords = roi.chords;
-  const std::vector<cv::Point2f> points = endsOf(chords, 0, lines.cols - 1);
+  const Points points = endsOf(chords, 0, lines.cols - 1);
   if (5 * points.size() <= chords.size()) {
     score.lampness = 0.5; // from border to border: no outline to judge by
     return score;
   }
-  std::vector<cv::Point2f> hull;
-  cv::convexHull(endsOf(chords, -1, lines.cols), hull); // that of a lamp cut by the border is convex as well
+  // That of a lamp cut by the border is convex as well.
+  const Points hull = hullOf(endsOf(chords, -1, lines.cols));
   if (points.size() < 6 || hull.size() < 3) {
     return score;
   }
   const double size = std::max(roi.box.width, roi.box.height);
   const Extent extent(hull, roi.box);
   score.shortfall = shortfalls(chords, extent, roi.box.y, 1 + 0.03 * size);
-  const double hollow = hollowness(score.shortfall, fullyLit(roi, lines, dark));
+  const double hollow = hollowness(score.shortfall, fullyLit(roi, light));
   const double convex = std::clamp((solidity(chords, extent, roi.box.y) - 0.4) / 0.5, 0.0, 1.0);
   if (convex <= 0) {
     return score;
   }
-  const std::vector<cv::Point2f> outer = onHull(points, hull, static_cast<float>(0.7 + 0.01 * size));
+  const Points outer = onHull(points, hull, static_cast<float>(0.7 + 0.01 * size));
   const double tolerance = 0.6 + 0.02 * size;
-  const double misfit = std::min(ellipseMisfit(outer, roi.box), rectangleMisfit(outer)) / tolerance;
+  static const double hardlyAny = 0.2; // misfit in tolerances: no rectangle would be a better lamp by 2 %
+  double misfit = ellipseMisfit(outer, roi.box) / tolerance;
+  if (misfit > hardlyAny) {
+    misfit = std::min(misfit, rectangleMisfit(outer) / tolerance);
+  }
   const double evidence = mostLampness(static_cast<int>(outer.size()));
   score.lampness = std::exp(-0.5 * (misfit * misfit + hollow)) * convex * roundness(roi) * evidence *
                    (0.4 + 0.6 * score.edge.sharpness());
@@ -346,54 +453,6 @@ bool vpChordShape::mayGoOn(const vpLedRoi &roi, const cv::Size &picture)
   std::reverse(widths.begin(), widths.end());
   const bool last = after <= gap + more && lines.second > picture.height - 1 && linesToClose(widths) > after;
   return first || last;
-}
-
-vpChordShape::Edge vpChordShape::edge(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark)
-{
-  Edge edge;
-  const int reach = reachOf(roi);
-  std::array<int, 256> differences{}; // of neighbours, along the lines
-  int pairs = 0;
-  int count = 0;
-  double light = 0;
-  for (const vpLedChord &chord : roi.chords) {
-    const unsigned char *row = lines[chord.line];
-    const int step = 1 + (chord.last - chord.first) / 32;
-    for (int x = chord.first; x < chord.last; x += step) {
-      light += row[x];
-      ++differences[std::abs(row[x + 1] - row[x])];
-      ++pairs;
-    }
-    for (int side = -1; side <= 1; side += 2) {
-      const int end = side < 0 ? chord.first : chord.last;
-      const int in = end - side * reach;
-      const int out = end + side * reach;
-      if (out < 0 || out >= lines.cols || in < chord.first || in > chord.last) {
-        continue;
-      }
-      edge.step += row[in] - row[out];
-      edge.inside += row[in] - dark;
-      ++count;
-    }
-  }
-  edge.ends = count;
-  edge.light = pairs > 0 ? light / pairs - dark : 0;
-  if (count > 0) {
-    edge.step /= count;
-    edge.inside /= count;
-  }
-  // The median of |difference| of two Gaussian pixels is 0.954 sigma; it comes in whole grey levels, so
-  // interpolate.
-  int sum = 0;
-  for (size_t d = 0; d < differences.size() && pairs > 0; ++d) {
-    if (2 * (sum + differences[d]) > pairs) {
-      const double within = (0.5 * pairs - sum) / differences[d];
-      edge.noise = std::max(0.0, (d - 0.5 + within) / 0.954);
-      break;
-    }
-    sum += differences[d];
-  }
-  return edge;
 }
 
 END_VISP_NAMESPACE

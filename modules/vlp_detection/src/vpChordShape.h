@@ -55,8 +55,6 @@ double mostLampness(int ends);
 
 Score score(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark);
 
-Edge edge(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark);
-
 /*!
   Whether the lamp may go on beyond the first or last line of the picture, though the region ends before it:
   by a dark gap no longer than the lamp shows elsewhere, and the chords there do not close.

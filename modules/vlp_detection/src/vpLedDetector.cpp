@@ -109,17 +109,6 @@ vpLedRoi joined(const vpLedRoi &a, const vpLedRoi &b)
   return roi;
 }
 
-//! Of a line, those brighter than \e grey.
-int countOf(const unsigned char *row, const vpLedChord &chord, unsigned char grey)
-{
-  int pixels = 0;
-  for (int x = chord.first; x <= chord.last; x += vpBrighter::block) {
-    pixels += __builtin_popcountll(
-        vpBrighter::mask(row + x, std::min(vpBrighter::block, chord.last - x + 1), grey));
-  }
-  return pixels;
-}
-
 //! Lit pixels of a region, and the share of them at the end of the grey scale.
 void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObservation &lamp)
 {
@@ -127,9 +116,10 @@ void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObserv
   const auto level = static_cast<unsigned char>(std::clamp(std::floor(roi.level), 0.0, 255.0));
   int pixels = 0, white = 0;
   for (const vpLedChord &chord : roi.chords) {
-    const unsigned char *row = picture.grey[chord.line];
-    pixels += countOf(row, chord, level);
-    white += countOf(row, chord, nearlyWhite - 1);
+    const unsigned char *row = picture.grey[chord.line] + chord.first;
+    const int samples = chord.last - chord.first + 1;
+    pixels += vpBrighter::count(row, samples, level);
+    white += vpBrighter::count(row, samples, nearlyWhite - 1);
   }
   lamp.features.area = pixels;
   lamp.saturated = pixels > 0 ? static_cast<double>(white) / pixels : 0;

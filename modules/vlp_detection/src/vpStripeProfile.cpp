@@ -13,6 +13,7 @@
 #include <Eigen/LU>
 #include <visp3/vlp_core/vpSimdClones.h>
 
+#include "vpBrighter.h"
 #include "vpLanes.h"
 #include "vpOutlineModel.h"
 
@@ -135,6 +136,7 @@ public:
   Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, const vpOutlineFit &fit);
 
   const LogFalloff &log() const { return m_log; }
+  bool even() const { return m_log.linear == 0 && m_log.square == 0; }
 
   SquaredRadius along(int line) const
   {
@@ -255,6 +257,17 @@ VP_SIMD_CLONES void sumsOf(const unsigned char *row, int first, int count, float
                    static_cast<int>(vpLanes::sum(notWhite))};
 }
 
+//! The same of an even emitter, whole numbers all of them.
+BothSums sumsOfEven(const unsigned char *row, int first, int count, float background)
+{
+  const vpBrighter::Sums sums = vpBrighter::sums(row + first, count, white - 1);
+  auto brightness = [background](int grey, int samples) {
+    const auto all = static_cast<float>(samples);
+    return Brightness{static_cast<float>(grey) - background * all, all, samples};
+  };
+  return {brightness(sums.all, count), brightness(sums.all - sums.brighter, count - sums.samplesBrighter)};
+}
+
 //! The samples of one line of the lamp: of its left and right half, and of what may be between them.
 class LineSamples
 {
@@ -264,6 +277,9 @@ public:
     const int count = chord.last - chord.first + 1, half = count / 2;
     const SquaredRadius radius = falloff.along(chord.line);
     auto sums = [&](int first, int samples) {
+      if (falloff.even()) {
+        return sumsOfEven(row, first, samples, static_cast<float>(background));
+      }
       BothSums sums;
       sumsOf(row, first, samples, static_cast<float>(background), radius, falloff.log(), sums);
       return sums;
@@ -336,10 +352,8 @@ private:
 bool hasWhiteLines(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
 {
   return std::any_of(chords.begin(), chords.end(), [&lines](const Chord &chord) {
-    const unsigned char *row = lines[chord.line];
-    return 2 * std::count_if(row + chord.first, row + chord.last + 1,
-                             [](unsigned char grey) { return grey >= white; }) >
-           chord.last - chord.first;
+    const int samples = chord.last - chord.first + 1;
+    return 2 * vpBrighter::count(lines[chord.line] + chord.first, samples, white - 1) > samples - 1;
   });
 }
 
