@@ -108,7 +108,7 @@ double quantile(std::vector<double> values, double share)
 
 vpBackground vpBackground::of(const cv::Mat_<unsigned char> &lines)
 {
-  static const int most = 1500;         // blocks
+  static const int most = 800;          // blocks
   static const double leastNoise = 0.3; // grey levels: that of rounding
   const int width = std::min(side, lines.cols);
   const int height = std::min(side, lines.rows);

@@ -45,12 +45,27 @@ inline std::uint64_t mask(const unsigned char *row, int samples, unsigned char g
   return bits;
 }
 
+//! The brightest of each \e width-th sample of a whole block.
+inline cv::v_uint8x16 most(const unsigned char *row)
+{
+  return cv::v_max(cv::v_max(cv::v_load(row), cv::v_load(row + width)),
+                   cv::v_max(cv::v_load(row + 2 * width), cv::v_load(row + 3 * width)));
+}
+
 //! Whether any sample of a whole block is.
 inline bool any(const unsigned char *row, unsigned char grey)
 {
-  const cv::v_uint8x16 most = cv::v_max(cv::v_max(cv::v_load(row), cv::v_load(row + width)),
-                                        cv::v_max(cv::v_load(row + 2 * width), cv::v_load(row + 3 * width)));
-  return cv::v_check_any(most > cv::v_setall_u8(grey));
+  return cv::v_check_any(most(row) > cv::v_setall_u8(grey));
+}
+
+constexpr int wide = 4 * block; // samples
+
+//! Whether any of \e wide samples is.
+inline bool anyWide(const unsigned char *row, unsigned char grey)
+{
+  const cv::v_uint8x16 brightest =
+      cv::v_max(cv::v_max(most(row), most(row + block)), cv::v_max(most(row + 2 * block), most(row + 3 * block)));
+  return cv::v_check_any(brightest > cv::v_setall_u8(grey));
 }
 
 //! How many of so many samples are.

@@ -119,7 +119,8 @@ void splitAtWaists(const vpLevelStripes &level, Group whole, const cv::Mat_<unsi
   double best = whole.roi.lampness + gain;
   std::pair<Group, Group> parts;
   std::pair<int, int> cut(-1, -1);
-  for (size_t k : waists(level, whole)) {
+  const bool good = best >= vpChordShape::mostLampness(2 * whole.roi.box.height); // no cut will be better
+  for (size_t k : good ? std::vector<size_t>() : waists(level, whole)) {
     workLeft -= static_cast<long>(whole.roi.chords.size() + whole.set.stripes.size());
     if (workLeft < 0) {
       break;

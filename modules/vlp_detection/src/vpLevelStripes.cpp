@@ -39,10 +39,18 @@ void scan(const unsigned char *row, int y, int first, int last, unsigned char gr
 {
   int start = -1; // of the run at hand
   for (int x = first; x <= last; x += vpBrighter::block) {
-    const int samples = std::min(vpBrighter::block, last - x + 1);
-    if (start < 0 && samples == vpBrighter::block && !vpBrighter::any(row + x, grey)) {
-      continue; // nearly always
+    if (start < 0) { // nearly always nothing
+      while (x + vpBrighter::wide - 1 <= last && !vpBrighter::anyWide(row + x, grey)) {
+        x += vpBrighter::wide;
+      }
+      while (x + vpBrighter::block - 1 <= last && !vpBrighter::any(row + x, grey)) {
+        x += vpBrighter::block;
+      }
+      if (x > last) {
+        break;
+      }
     }
+    const int samples = std::min(vpBrighter::block, last - x + 1);
     const std::uint64_t mask = vpBrighter::mask(row + x, samples, grey);
     for (int i = 0; i < samples;) {
       const std::uint64_t left = (start < 0 ? mask : ~mask) >> i;

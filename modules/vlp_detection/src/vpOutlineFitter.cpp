@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "vpChordShape.h"
 #include "vpEdgeFit.h"
@@ -162,7 +163,10 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     addElongationDoubt(best.outline, roi, ellipse.prior());
   }
   bool even = isEllipse && ellipse.evenness() > evenEdge;
-  const double sidesMisfit = vpChordShape::rectangleMisfit(ends);
+  static const double round = 0.015; // share of the radius: no rectangle is that near to an ellipse
+  const bool maySquare = !even || ellipseMisfit > round * start.radius();
+  const double sidesMisfit =
+      maySquare ? vpChordShape::rectangleMisfit(ends) : std::numeric_limits<double>::infinity();
   if (sidesMisfit <= 3 * ellipseMisfit) {
     vpEdgeFit<vpQuadrilateralModel>::Memory ofSides;
     vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions,

@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 
 BEGIN_VISP_NAMESPACE
 
@@ -19,6 +20,20 @@ bool agree(const Eigen::VectorXd &residuals, double period)
 {
   static const double most = 0.15; // periods, root mean square
   return residuals.norm() < most * period * std::sqrt(static_cast<double>(residuals.size()));
+}
+
+//! Least squares of A x = b, of few unknowns: by their normal equations, NaN where these are singular.
+Eigen::VectorXd solved(const Eigen::MatrixXd &A, const Eigen::VectorXd &b)
+{
+  static const int most = 8; // unknowns
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
+  const Eigen::LDLT<Square> normal(Square(A.transpose() * A));
+  static const double singular = 1e-14; // share of the largest
+  const auto pivots = normal.vectorD().cwiseAbs();
+  if (!(pivots.minCoeff() > singular * pivots.maxCoeff())) {
+    return Eigen::VectorXd::Constant(A.cols(), std::numeric_limits<double>::quiet_NaN());
+  }
+  return normal.solve(A.transpose() * b);
 }
 
 double scaledLine(const vpStripeProfile &profile, size_t i)
@@ -100,7 +115,7 @@ std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, con
   for (int k = 1; k <= fitted; ++k) {
     A(n + k - 1, k) = 0.1; // as flat as the peaks allow
   }
-  Eigen::VectorXd coefficients = A.colPivHouseholderQr().solve(b);
+  Eigen::VectorXd coefficients = solved(A, b);
   // A pulse that the lamp's border or a line's exposure cuts short peaks below the envelope: such ones let
   // go.
   static const double below = 0.1; // of a logarithm
@@ -110,7 +125,10 @@ std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, con
     for (Eigen::Index i = 0; i < n; ++i) {
       weights(i) = residuals(i) < -below ? below / -residuals(i) : 1;
     }
-    coefficients = (weights.asDiagonal() * A).colPivHouseholderQr().solve(weights.cwiseProduct(b));
+    if (round == 0 && (weights.array() == 1).all()) {
+      break; // nothing to let go of
+    }
+    coefficients = solved(weights.asDiagonal() * A, weights.cwiseProduct(b));
   }
   std::vector<double> envelope;
   for (size_t line = 0; line < profile.light.size(); ++line) {
@@ -170,7 +188,7 @@ std::optional<vpStripeStarts::Pulses> vpStripeStarts::pulses(const std::vector<E
     A.row(i) << 1, pulse, edge.rising ? 0 : 1;
     b(i) = edge.time;
   }
-  const Eigen::Vector3d x = A.colPivHouseholderQr().solve(b);
+  const Eigen::Vector3d x = solved(A, b);
   const double period = x(1), length = x(2);
   if (!(period > 0 && length > 0.01 * period && length < 0.99 * period) || !agree(A * x - b, period)) {
     return std::nullopt;
@@ -194,7 +212,7 @@ std::optional<vpStripeStarts::Pulses> vpStripeStarts::pairsOfPulses(const std::v
     A.row(i) << 1, pulse / 2, edge.rising ? 0 : 1, pulse % 2;
     b(i) = edge.time;
   }
-  Eigen::Vector4d x = A.colPivHouseholderQr().solve(b);
+  Eigen::Vector4d x = solved(A, b);
   const double period = x(1), length = x(2);
   if (!(period > 0 && length > 0.01 * period && x(3) > length && period - x(3) > length) ||
       !agree(A * x - b, period)) {

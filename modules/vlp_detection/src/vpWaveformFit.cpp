@@ -269,9 +269,9 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
 //! polynomials alone do not do.
 bool vpWaveformFit::bendEnvelope()
 {
-  static const double most = 5;
+  static const double least = 0.02, most = 5;
   const Eigen::ArrayXd bent = envelope() / m_coefficient[1], factor = bent / m_given;
-  if (!(factor > 1 / most && factor < most).all()) {
+  if (!(factor > 1 / most && factor < most).all() || ((factor - 1).abs() < least).all()) {
     return false;
   }
   m_given = bent;
