@@ -13,6 +13,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "vpChordHull.h"
 #include "vpOutlineModel.h"
 
 BEGIN_VISP_NAMESPACE
@@ -20,80 +21,9 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
+using vpChordHull::Points;
+
 const double noFit = 1e6; // px
-
-using Points = std::vector<cv::Point2f>;
-
-//! The turn from \e a over \e b to \e c, twice the area of their triangle.
-float turn(const cv::Point2f &a, const cv::Point2f &b, const cv::Point2f &c)
-{
-  return (b - a).cross(c - b);
-}
-
-/*!
-  Convex hull of points that come line by line, each line's leftmost first (Andrew 1979): down its left side
-  and up its right one.
-*/
-Points hullOf(const Points &points)
-{
-  Points left, right;
-  auto add = [](Points &side, const cv::Point2f &point, float sign) {
-    while (side.size() > 1 && sign * turn(side[side.size() - 2], side.back(), point) >= 0) {
-      side.pop_back();
-    }
-    side.push_back(point);
-  };
-  for (size_t i = 0; i < points.size();) {
-    size_t end = i + 1;
-    while (end < points.size() && points[end].y == points[i].y) {
-      ++end;
-    }
-    add(left, points[i], 1);
-    add(right, points[end - 1], -1);
-    i = end;
-  }
-  left.insert(left.end(), right.rbegin(), right.rend());
-  left.erase(std::unique(left.begin(), left.end()), left.end());
-  if (left.size() > 1 && left.front() == left.back()) {
-    left.pop_back();
-  }
-  return left;
-}
-
-//! The points, line by line, no farther than \e nearly from their convex hull.
-Points onHull(const Points &points, const Points &hull, float nearly)
-{
-  struct Side {
-    cv::Point2f from, normal;
-  };
-  std::vector<Side> sides;
-  for (size_t i = 0; i < hull.size(); ++i) {
-    const cv::Point2f side = hull[(i + 1) % hull.size()] - hull[i];
-    const float length = std::sqrt(side.dot(side));
-    if (length > 0) {
-      sides.push_back({hull[i], cv::Point2f(-side.y, side.x) / length});
-    }
-  }
-  Points outer;
-  if (sides.empty()) {
-    return outer;
-  }
-  // First and last end by turns, one down the hull, the other up: the side of the last but one is likely the
-  // next one's, or that after it.
-  std::array<size_t, 2> likely{0, sides.size() - 1};
-  for (size_t k = 0; k < points.size(); ++k) {
-    size_t &begin = likely[k % 2];
-    for (size_t tried = 0, i = begin; tried < sides.size(); ++tried) {
-      if (std::abs(sides[i].normal.dot(points[k] - sides[i].from)) <= nearly) {
-        outer.push_back(points[k]);
-        begin = i;
-        break;
-      }
-      i = k % 2 == 0 ? (i + 1) % sides.size() : (i > 0 ? i : sides.size()) - 1;
-    }
-  }
-  return outer;
-}
 
 //! How far samples outside and inside an end tell its edge: past a little blur.
 int reachOf(const vpLedRoi &roi)
@@ -201,56 +131,6 @@ std::vector<bool> fullyLit(const vpLedRoi &roi, const std::vector<float> &light)
   return lit;
 }
 
-//! Left and right end of a polygon on each line of the box.
-struct Extent {
-  std::vector<float> first;
-  std::vector<float> last;
-
-  Extent(const std::vector<cv::Point2f> &polygon, const cv::Rect &box)
-      : first(box.height, 1e9f), last(box.height, -1e9f)
-  {
-    for (size_t i = 0; i < polygon.size(); ++i) {
-      cv::Point2f top = polygon[i];
-      cv::Point2f bottom = polygon[(i + 1) % polygon.size()];
-      if (top.y > bottom.y) {
-        std::swap(top, bottom);
-      }
-      for (int y = cvRound(top.y); y <= cvRound(bottom.y); ++y) {
-        const float share = bottom.y > top.y ? (y - top.y) / (bottom.y - top.y) : 0;
-        const float x = top.x + share * (bottom.x - top.x);
-        first[y - box.y] = std::min({first[y - box.y], x, bottom.y > top.y ? x : bottom.x});
-        last[y - box.y] = std::max({last[y - box.y], x, bottom.y > top.y ? x : bottom.x});
-      }
-    }
-  }
-};
-
-//! Lit length over the length of the convex hull, summed over the lit lines: 1 for a convex region.
-double solidity(const std::vector<vpLedChord> &chords, const Extent &hull, int firstLine)
-{
-  double lit = 0;
-  double convex = 0;
-  for (const vpLedChord &chord : chords) {
-    lit += chord.last - chord.first + 1;
-    convex += std::max(hull.last[chord.line - firstLine] - hull.first[chord.line - firstLine], 1.0f);
-  }
-  return std::min(1.0, lit / convex);
-}
-
-//! How far each chord ends inside the hull, on its worse side, in units of \e tolerance.
-std::vector<float> shortfalls(const std::vector<vpLedChord> &chords, const Extent &hull, int firstLine,
-                              double tolerance)
-{
-  std::vector<float> shortfall;
-  shortfall.reserve(chords.size());
-  for (const vpLedChord &chord : chords) {
-    const int y = chord.line - firstLine;
-    const double worse = std::max(chord.first - 0.5 - hull.first[y], hull.last[y] - chord.last - 0.5);
-    shortfall.push_back(static_cast<float>(worse / tolerance));
-  }
-  return shortfall;
-}
-
 //! Mean square of the shortfalls of the lines that are fully lit.
 double hollowness(const std::vector<float> &shortfall, const std::vector<bool> &lit)
 {
@@ -335,7 +215,8 @@ std::vector<cv::Point2f> vpChordShape::outerEnds(const vpLedRoi &roi, int sample
   if (points.size() < 3) {
     return points;
   }
-  return onHull(points, hullOf(points), 0.7f + 0.01f * static_cast<float>(std::max(roi.box.width, roi.box.height)));
+  return vpChordHull::nearIt(points, vpChordHull::of(points),
+                             0.7f + 0.01f * static_cast<float>(std::max(roi.box.width, roi.box.height)));
 }
 
 double vpChordShape::ellipseMisfit(const std::vector<cv::Point2f> &points, const cv::Rect &box)
@@ -397,19 +278,19 @@ vpChordShape::Score vpChordShape::score(const vpLedRoi &roi, const cv::Mat_<unsi
     return score;
   }
   // That of a lamp cut by the border is convex as well.
-  const Points hull = hullOf(endsOf(chords, -1, lines.cols));
+  const Points hull = vpChordHull::of(endsOf(chords, -1, lines.cols));
   if (points.size() < 6 || hull.size() < 3) {
     return score;
   }
   const double size = std::max(roi.box.width, roi.box.height);
-  const Extent extent(hull, roi.box);
-  score.shortfall = shortfalls(chords, extent, roi.box.y, 1 + 0.03 * size);
+  const vpChordHull::Extent extent(hull, roi.box);
+  score.shortfall = vpChordHull::shortfalls(chords, extent, roi.box.y, 1 + 0.03 * size);
   const double hollow = hollowness(score.shortfall, fullyLit(roi, light));
-  const double convex = std::clamp((solidity(chords, extent, roi.box.y) - 0.4) / 0.5, 0.0, 1.0);
+  const double convex = std::clamp((vpChordHull::solidity(chords, extent, roi.box.y) - 0.4) / 0.5, 0.0, 1.0);
   if (convex <= 0) {
     return score;
   }
-  const Points outer = onHull(points, hull, static_cast<float>(0.7 + 0.01 * size));
+  const Points outer = vpChordHull::nearIt(points, hull, static_cast<float>(0.7 + 0.01 * size));
   const double tolerance = 0.6 + 0.02 * size;
   static const double hardlyAny = 0.2; // misfit in tolerances: no rectangle would be a better lamp by 2 %
   double misfit = ellipseMisfit(outer, roi.box) / tolerance;

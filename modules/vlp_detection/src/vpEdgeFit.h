@@ -23,6 +23,15 @@ constexpr float lit = 0.6f, unlit = 0.4f; // shares of a pixel that the pixels o
 constexpr double sharp = 0.5;             // px of blur up to which a pixel's square is no Gaussian
 } // namespace vpEdgeLimits
 
+//! How much brighter lens shading (vignetting) leaves some samples of a lamp than its middle.
+struct vpLensShading {
+  double middle;   // px along the line, of the lamp, about
+  double perPixel; // share of the light there by which it grows along the line
+
+  //! Times. \param u px along the line.
+  double at(double u) const { return 1 + perPixel * (u - middle); }
+};
+
 //! Samples of a line about an edge.
 struct vpLineStretch {
   int from, to;
@@ -144,17 +153,10 @@ private:
     }
     return true;
   }
-  void addCrossing(int line, const vpLineStretch &pixels, double crossing);
-  void addAlong(int line, const vpLineStretch &pixels);
   void addEnds(int from, int to);
   void findEnds();
   void assemble(Equations &equations);
   double shadingOfEnds() const;
-  //! How much brighter lens shading leaves a sample than the lamp's middle, times.
-  double lightAt(int sample) const
-  {
-    return 1 + m_shading * ((*m_u)[static_cast<size_t>(sample)] - m_middle);
-  }
 
   const cv::Mat_<unsigned char> *m_lines;
   const std::vector<double> *m_v;
@@ -182,6 +184,8 @@ private:
 
 template <>
 void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to);
+template <>
+void vpEdgeFit<vpQuadrilateralModel>::addEnds(int from, int to);
 extern template class vpEdgeFit<vpEllipseModel>;
 extern template class vpEdgeFit<vpQuadrilateralModel>;
 

@@ -14,6 +14,7 @@
 
 #include "vpBackground.h"
 #include "vpChordShape.h"
+#include "vpLampGroup.h"
 #include "vpLevelStripes.h"
 
 BEGIN_VISP_NAMESPACE
@@ -21,155 +22,7 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-double sizeOf(const vpLedRoi &roi)
-{
-  return std::max(roi.box.width, roi.box.height);
-}
-
-//! Stripes that may be one lamp, at one level; a node of the tree.
-struct Group {
-  vpLedRoi roi;
-  vpLevelStripes::Set set; // of its level
-  std::vector<float> shortfall;
-  vpChordShape::Edge edge;
-  int parent = -1;
-  std::vector<int> children;
-};
-
-//! The stripes' chords: on each line from the first to the last lit sample.
-Group groupOf(const vpLevelStripes &level, vpLevelStripes::Set set, const cv::Mat_<unsigned char> &lines,
-              double dark)
-{
-  Group group;
-  vpLedRoi &roi = group.roi;
-  roi.level = level.grey;
-  for (int s : set.stripes) {
-    roi.box |= level.stripes[s].box;
-  }
-  std::vector<vpLedChord> chords(roi.box.height, vpLedChord{-1, 0, 0});
-  for (int s : set.stripes) {
-    for (int r : level.stripes[s].runs) {
-      const vpLevelStripes::Run &run = level.runs[r];
-      vpLedChord &chord = chords[run.line - roi.box.y];
-      if (chord.line < 0) {
-        chord = {run.line, run.first, run.last};
-      } else {
-        chord.first = std::min(chord.first, run.first);
-        chord.last = std::max(chord.last, run.last);
-      }
-    }
-  }
-  std::copy_if(chords.begin(), chords.end(), std::back_inserter(roi.chords),
-               [](const vpLedChord &chord) { return chord.line >= 0; });
-  roi.cutAcross = roi.box.x <= 0 || roi.box.br().x >= lines.cols;
-  roi.cutAlong = roi.box.y <= 0 || roi.box.br().y >= lines.rows;
-  vpChordShape::Score score = vpChordShape::score(roi, lines, dark);
-  roi.lampness = score.lampness;
-  group.shortfall = std::move(score.shortfall);
-  group.edge = score.edge;
-  group.set = std::move(set);
-  return group;
-}
-
-//! Weighted by size.
-double meanLampness(const vpLedRoi &a, const vpLedRoi &b)
-{
-  return (sizeOf(a) * a.lampness + sizeOf(b) * b.lampness) / (sizeOf(a) + sizeOf(b));
-}
-
-//! Links between stripes of which one falls far short of the hull, worst first.
-std::vector<size_t> waists(const vpLevelStripes &level, const Group &group)
-{
-  static const float notable = 1.5; // tolerances
-  static const size_t most = 6;
-  std::vector<float> shortfall(group.roi.box.height, 0); // of each line
-  for (size_t i = 0; i < group.roi.chords.size(); ++i) {
-    shortfall[group.roi.chords[i].line - group.roi.box.y] = group.shortfall[i];
-  }
-  auto worstOf = [&](const vpLevelStripes::Stripe &stripe) {
-    const auto first = shortfall.begin() + (stripe.box.y - group.roi.box.y);
-    return *std::max_element(first, first + stripe.box.height);
-  };
-  std::vector<std::pair<float, size_t>> worst;
-  for (size_t k = 0; k < group.set.links.size(); ++k) {
-    const float upper = worstOf(level.stripes[group.set.links[k].first]);
-    const float lower = worstOf(level.stripes[group.set.links[k].second]);
-    if (std::max(upper, lower) > notable) {
-      worst.emplace_back(std::max(upper, lower) + 0.01f * std::min(upper, lower), k);
-    }
-  }
-  std::sort(worst.begin(), worst.end(), [](const auto &a, const auto &b) { return a.first > b.first; });
-  std::vector<size_t> links;
-  for (size_t i = 0; i < std::min(most, worst.size()); ++i) {
-    links.push_back(worst[i].second);
-  }
-  return links;
-}
-
-/*!
-  Lamps one behind the other along the readout may lie closer than the longest dark gap of one lamp. One lamp
-  is convex; where the whole has a waist between two stripes, tries to cut it there, and keeps the cut that
-  makes the best lamps of its parts, weighted by their size. \e workLeft bounds the work on clutter.
-*/
-void splitAtWaists(const vpLevelStripes &level, Group whole, const cv::Mat_<unsigned char> &lines,
-                   double dark, long &workLeft, std::vector<Group> &out,
-                   std::vector<std::pair<int, int>> &cuts)
-{
-  static const double gain = 0.15;
-  double best = whole.roi.lampness + gain;
-  std::pair<Group, Group> parts;
-  std::pair<int, int> cut(-1, -1);
-  const bool good = best >= vpChordShape::mostLampness(2 * whole.roi.box.height); // no cut will be better
-  for (size_t k : good ? std::vector<size_t>() : waists(level, whole)) {
-    workLeft -= static_cast<long>(whole.roi.chords.size() + whole.set.stripes.size());
-    if (workLeft < 0) {
-      break;
-    }
-    auto [upperSet, lowerSet] = whole.set.cutAt(k);
-    Group upper = groupOf(level, std::move(upperSet), lines, dark);
-    Group lower = groupOf(level, std::move(lowerSet), lines, dark);
-    const double mean = meanLampness(upper.roi, lower.roi);
-    if (mean > best) {
-      best = mean;
-      parts = {std::move(upper), std::move(lower)};
-      cut = whole.set.links[k];
-    }
-  }
-  if (cut.first < 0) {
-    out.push_back(std::move(whole));
-    return;
-  }
-  cuts.push_back(cut);
-  splitAtWaists(level, std::move(parts.first), lines, dark, workLeft, out, cuts);
-  splitAtWaists(level, std::move(parts.second), lines, dark, workLeft, out, cuts);
-}
-
-/*!
-  The stripes of a set as lamps: split at waists, one cut after the other. A cut that was the best one while
-  other lamps were in the set may part a lamp; so parts that are no worse as one are joined again.
-*/
-std::vector<Group> lampsOf(const vpLevelStripes &level, vpLevelStripes::Set set,
-                           const cv::Mat_<unsigned char> &lines, double dark, long &workLeft)
-{
-  std::vector<Group> parts;
-  std::vector<std::pair<int, int>> cuts;
-  splitAtWaists(level, groupOf(level, std::move(set), lines, dark), lines, dark, workLeft, parts, cuts);
-  auto partOf = [&](int stripe) {
-    return std::find_if(parts.begin(), parts.end(), [&](const Group &part) {
-      return std::find(part.set.stripes.begin(), part.set.stripes.end(), stripe) != part.set.stripes.end();
-    });
-  };
-  for (size_t k = 0; k < cuts.size() && parts.size() > 2; ++k) {
-    const auto upper = partOf(cuts[k].first);
-    const auto lower = partOf(cuts[k].second);
-    Group joined = groupOf(level, upper->set.joinedWith(lower->set, cuts[k]), lines, dark);
-    if (joined.roi.lampness >= meanLampness(upper->roi, lower->roi)) {
-      *upper = std::move(joined);
-      parts.erase(lower);
-    }
-  }
-  return parts;
-}
+using Group = vpLampGroup;
 
 //! Whether light falls at the ends of the chords by more than noise makes it seem: the fewer the ends, the
 //! more is asked of them. A fringe of noise on slowly changing light has no such fall.
@@ -209,8 +62,8 @@ double bestBranch(const std::vector<Group> &tree, int node, double noise, std::v
     const size_t before = above.size();
     const double best = bestBranch(tree, child, noise, above);
     if (above.size() > before) {
-      sum += sizeOf(tree[child].roi) * best;
-      weight += sizeOf(tree[child].roi);
+      sum += tree[child].size() * best;
+      weight += tree[child].size();
     }
   }
   const bool stands = significant(group, noise);
@@ -344,7 +197,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
     const double grey = dark.level + contrast;
     vpLevelStripes level(lines, grey, grey + peakFactor * dark.noiseAt(grey), first ? nullptr : &below);
     for (vpLevelStripes::Set &set : level.sets(maxDarkGap)) {
-      for (Group &group : lampsOf(level, std::move(set), lines, dark.level, workLeft)) {
+      for (Group &group : Group::lampsOf(level, std::move(set), lines, dark.level, workLeft)) {
         const int node = static_cast<int>(tree.size());
         const int largest =
             *std::max_element(group.set.stripes.begin(), group.set.stripes.end(), [&](int a, int b) {
