@@ -16,12 +16,24 @@
 
 BEGIN_VISP_NAMESPACE
 
+namespace
+{
+std::string notEmpty(const std::string &text)
+{
+  return text.empty() ? "an empty name" : "";
+}
+} // namespace
+
 void vpAddName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
                const std::string &help)
 {
-  app.add_option(option, name, help)->type_name(type)->check([](const std::string &text) {
-    return std::string(text.empty() ? "an empty name" : "");
-  });
+  app.add_option(option, name, help)->type_name(type)->check(notEmpty);
+}
+
+void vpAddNames(CLI::App &app, const std::string &option, std::vector<std::string> &names, bool several,
+                const std::string &type, const std::string &help)
+{
+  app.add_option(option, names, help)->type_name(type)->expected(several ? -1 : 1)->check(notEmpty);
 }
 
 void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,

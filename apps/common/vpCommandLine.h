@@ -22,6 +22,10 @@ BEGIN_VISP_NAMESPACE
 void vpAddName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
                const std::string &help);
 
+//! An option that takes one such text, or \e several, one or more.
+void vpAddNames(CLI::App &app, const std::string &option, std::vector<std::string> &names, bool several,
+                const std::string &type, const std::string &help);
+
 //! An option that takes one of a few words.
 void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,
                  const std::vector<std::string> &choices, const std::string &help);

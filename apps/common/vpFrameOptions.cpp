@@ -42,21 +42,13 @@ private:
   std::unique_ptr<vpFrameSource> m_source;
   size_t m_most, m_taken = 0;
 };
-
-std::string notEmpty(const std::string &name)
-{
-  return name.empty() ? "an empty name" : "";
-}
 } // namespace
 
 void vpFrameOptions::add(CLI::App &app)
 {
-  app.add_option("--run", runs,
-                 manyRuns ? "frames of recorded or simulated runs: DIR/frames.csv"
-                          : "frames of a recorded or simulated run: DIR/frames.csv")
-      ->type_name("DIR")
-      ->expected(1, manyRuns ? CLI::detail::expected_max_vector_size : 1)
-      ->check(notEmpty);
+  vpAddNames(app, "--run", runs, manyRuns, "DIR",
+             manyRuns ? "frames of recorded or simulated runs: DIR/frames.csv"
+                      : "frames of a recorded or simulated run: DIR/frames.csv");
   vpAddName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
   app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
   vpAddName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
