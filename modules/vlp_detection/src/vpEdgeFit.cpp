@@ -235,10 +235,10 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
       sparse = i + 1;
       continue;
     }
-    static const double ofBlur = 10, ofShading = 0.2; // of a step: blur moves no edge, shading all by as much
+    static const double ofBlur = 0.05, ofShading = 0.001; // px: blur moves no edge, shading all by as much
     const double byShading = std::abs(m_shading - shadingBefore) * m_reach * m_reach / 3; // px, about
     if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < steps.still &&
-        std::abs(m_blur - before) < ofBlur * steps.still && byShading < ofShading * steps.still) {
+        std::abs(m_blur - before) < ofBlur && byShading < ofShading) {
       break;
     }
   }
