@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds Release and runs every test.
+# Installs what is missing, builds Release as far as tests use it and runs every test.
 # VLP_INPUT_IMAGE_PATH: the folder of real pictures that tests/real looks at; without it those tests are skipped.
 set -euo pipefail
 
@@ -14,7 +14,7 @@ fi
 
 bash cmake/install-dependencies.sh
 cmake --preset release
-cmake --build --preset release
+cmake --build --preset release --target tested
 status=0
 ctest --preset release "$@" || status=$?
 # Every test names each picture that it uses; several use the same.

@@ -99,7 +99,7 @@ private:
     followOdometry(frame.timestamp);
     const auto start = std::chrono::steady_clock::now();
     try {
-      located.location = m_localizer.process(frame);
+      m_localizer.process(frame, located.location);
     } catch (const vpException &error) { // knows no file
       throw vpException(error.getCode(), frame.name + ": " + error.getStringMessage());
     }
