@@ -35,7 +35,8 @@ int main(int argc, char **argv)
   const std::string kind = argc > 2 ? argv[2] : "";
   const int frames = argc > 3 ? std::atoi(argv[3]) : 4;
   what.cluttered = argc > 4 && std::string(argv[4]) == "cluttered";
-  if (argc < 3 || argc > (what.cluttered ? 5 : 4) || std::sscanf(argv[1], "%ux%u", &what.width, &what.height) != 2 || frames < 1 ||
+  if (argc < 3 || argc > (what.cluttered ? 5 : 4) ||
+      std::sscanf(argv[1], "%ux%u", &what.width, &what.height) != 2 || frames < 1 ||
       (kind != "whole" && kind != "tracked")) {
     std::fprintf(stderr, "usage: bench_instructions WIDTHxHEIGHT whole|tracked [FRAMES [cluttered]]\n");
     return 2;

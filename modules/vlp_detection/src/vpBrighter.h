@@ -63,8 +63,8 @@ constexpr int wide = 4 * block; // samples
 //! Whether any of \e wide samples is.
 inline bool anyWide(const unsigned char *row, unsigned char grey)
 {
-  const cv::v_uint8x16 brightest =
-      cv::v_max(cv::v_max(most(row), most(row + block)), cv::v_max(most(row + 2 * block), most(row + 3 * block)));
+  const cv::v_uint8x16 brightest = cv::v_max(cv::v_max(most(row), most(row + block)),
+                                             cv::v_max(most(row + 2 * block), most(row + 3 * block)));
   return cv::v_check_any(brightest > cv::v_setall_u8(grey));
 }
 
