@@ -51,8 +51,8 @@ void vpEdgeFit<Model>::findEnds()
 {
   double top, bottom;
   m_model.vertical(top, bottom);
-  const int from = std::max(0, static_cast<int>(std::floor(top)) - 1);
-  const int to = std::min(m_lines->rows - 1, static_cast<int>(std::ceil(bottom)) + 1);
+  const int from = std::max(m_first, static_cast<int>(std::floor(top)) - 1);
+  const int to = std::min(m_last, static_cast<int>(std::ceil(bottom)) + 1);
   m_memory->clear(2 * static_cast<size_t>(std::max(0, to - from + 1)));
   addEnds(from, to);
 }
@@ -180,6 +180,9 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
   const double widest = 0.15 * radius + 1;
   const Eigen::Vector2d start = m_model.centre();
   m_middle = box.x + 0.5 * (box.width - 1);
+  const int beyond = 2 + box.height / 8; // lines, that the region may have fallen short of
+  m_first = std::max(0, box.y - beyond);
+  m_last = std::min(m_lines->rows, box.br().y + beyond) - 1;
   m_blur = std::clamp(blur > 0 ? blur : std::clamp(0.03 * radius, 0.7, 4.0), sharpest, widest);
   const bool likely = blur > 0;
   int sparse = steps.sparse;

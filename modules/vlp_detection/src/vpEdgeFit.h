@@ -164,9 +164,11 @@ private:
   bool m_aligned; // of the samples
   Model m_model;
   double m_blur = 1.5;
-  double m_middle = 0;    // px along the line, of the lamp, about
-  double m_shading = 0;   // share of the light in the middle by which it grows along the line, 1/px
-  double m_reach = 0;     // px on either side of the edge
+  double m_middle = 0;  // px along the line, of the lamp, about
+  double m_shading = 0; // share of the light in the middle by which it grows along the line, 1/px
+  double m_reach = 0;   // px on either side of the edge
+  // Lines that are looked at: the region's and a few beyond, as others show nothing of it.
+  int m_first = 0, m_last = 0;
   int m_every = 1;        // so many lines are looked at one of, eight at a time
   bool m_litOnly = false; // dark lines are not looked at
   Eigen::Matrix<double, N, N> m_covariance = Eigen::Matrix<double, N, N>::Zero();
