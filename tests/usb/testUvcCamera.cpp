@@ -114,7 +114,7 @@ TEST_F(UvcCamera, ALongPauseIsWaitedOut)
   for (int k = 0; k < 3; ++k) {
     ASSERT_TRUE(camera.next(frame));
     vpEmulatedUvcCamera::State state = usb.state();
-    state.pause = 0.5;
+    state.pause = 0.3; // s: six frames, a third of what it waits for
     usb.setState(state);
   }
   EXPECT_EQ(camera.counters().reconnects, 0u);
