@@ -100,7 +100,7 @@ TEST(Path, ClosestPlaceIsNoFartherThanAnyOther)
   std::mt19937_64 generator(1);
   std::uniform_real_distribution<double> uniform(-0.6, 0.6);
   for (const vpPath &path : paths()) {
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < 400; ++i) {
       const Eigen::Vector2d place(uniform(generator), uniform(generator));
       const double best = (path.at(path.closest(place)).place - place).norm();
       for (double s = 0; s <= path.length(); s += 1e-3) {

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpAtomicFile.h>
@@ -175,22 +177,36 @@ double vpPath::closest(const Eigen::Vector2d &place, double from, double to) con
     from = std::clamp(from, 0.0, length());
     to = std::clamp(to, 0.0, length());
   }
-  const auto distance = [&](double s) { return (at(s).place - place).squaredNorm(); };
-  // Along steps that no shape bends much in, then by golden sections about the best of them.
+  const auto distance = [&](double s) { return (at(s).place - place).norm(); };
+  // Along steps that no shape bends much in, then by golden sections about those that may be the best: within
+  // a step it comes no nearer than by the step.
   constexpr double step = 0.01; // m
   const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / step)));
   const double width = (to - from) / steps;
-  int best = 0;
-  for (int i = 1; i <= steps; ++i) {
-    best = distance(from + i * width) < distance(from + best * width) ? i : best;
+  std::vector<double> away;
+  for (int i = 0; i <= steps; ++i) {
+    away.push_back(distance(from + i * width));
   }
-  double low = std::max(from, from + (best - 1) * width), high = std::min(to, from + (best + 1) * width);
-  constexpr double golden = 0.6180339887498949, precise = 1e-7; // m
-  while (high - low > precise) {
-    const double left = high - golden * (high - low), right = low + golden * (high - low);
-    (distance(left) < distance(right) ? high : low) = distance(left) < distance(right) ? right : left;
+  const double most = *std::min_element(away.begin(), away.end()) + width;
+  double best = from, nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= steps; ++i) {
+    const auto here = away.begin() + i;
+    if (*here > most || (i > 0 && here[-1] < *here) || (i < steps && here[1] < *here)) {
+      continue;
+    }
+    double low = std::max(from, from + (i - 1) * width), high = std::min(to, from + (i + 1) * width);
+    constexpr double golden = 0.6180339887498949, precise = 1e-7; // m
+    while (high - low > precise) {
+      const double left = high - golden * (high - low), right = low + golden * (high - low);
+      (distance(left) < distance(right) ? high : low) = distance(left) < distance(right) ? right : left;
+    }
+    const double middle = 0.5 * (low + high);
+    if (distance(middle) < nearest) {
+      nearest = distance(middle);
+      best = middle;
+    }
   }
-  return 0.5 * (low + high);
+  return best;
 }
 
 double vpPath::offset(const Eigen::Vector2d &place, double s) const
