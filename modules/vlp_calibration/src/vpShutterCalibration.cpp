@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -145,17 +146,17 @@ double vpShutterCalibration::likeliestRowTime(const std::vector<Stripes> &stripe
   }
   // Each pair of stripes and lamp says what the row time would be, were it that lamp.
   struct Vote {
-    double rowTime;
+    double rowTime, sigma; // s; a share of it
     size_t explained;
   };
   std::vector<Vote> votes;
   size_t most = 0;
   for (const Stripes &seen : stripes) {
     for (const vpLamp &lamp : m_map.lamps) {
-      Vote vote{seen.cycles / lamp.modulation.frequency, 0};
+      Vote vote{seen.cycles / lamp.modulation.frequency, seen.cyclesSigma / seen.cycles, 0};
       for (const Stripes &other : stripes) {
         // The voter is off as well.
-        const double relative = std::hypot(other.cyclesSigma / other.cycles, seen.cyclesSigma / seen.cycles);
+        const double relative = std::hypot(other.cyclesSigma / other.cycles, vote.sigma);
         vote.explained += lampOf(other.cycles, relative, vote.rowTime) != none;
       }
       most = std::max(most, vote.explained);
@@ -163,16 +164,23 @@ double vpShutterCalibration::likeliestRowTime(const std::vector<Stripes> &stripe
     }
   }
   static const double nearlyAsMany = 0.9;
+  votes.erase(std::remove_if(votes.begin(), votes.end(),
+                             [most](const Vote &vote) {
+                               return static_cast<double>(vote.explained) <
+                                      nearlyAsMany * static_cast<double>(most);
+                             }),
+              votes.end());
   std::vector<double> rowTimes;
-  for (const Vote &vote : votes) {
-    if (static_cast<double>(vote.explained) >= nearlyAsMany * static_cast<double>(most)) {
-      rowTimes.push_back(vote.rowTime);
-    }
-  }
+  std::transform(votes.begin(), votes.end(), std::back_inserter(rowTimes),
+                 [](const Vote &vote) { return vote.rowTime; });
   std::sort(rowTimes.begin(), rowTimes.end());
-  const bool one = rowTimes.back() < 1.02 * rowTimes.front();
+  const double middle = median(rowTimes);
+  const bool one = std::all_of(votes.begin(), votes.end(), [middle](const Vote &vote) {
+    static const double same = 0.01, sigmas = 3; // a lamp that the border cuts says little
+    return std::abs(vote.rowTime / middle - 1) < same + sigmas * vote.sigma;
+  });
   if (one) {
-    return median(rowTimes);
+    return middle;
   }
   if (!(m_rig.shutter.rowTime > 0)) {
     refusal = "row times from " + vpNumberText(rowTimes.front()) + " to " + vpNumberText(rowTimes.back()) +
