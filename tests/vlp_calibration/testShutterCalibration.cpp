@@ -55,6 +55,24 @@ TEST(ShutterCalibration, TenFramesTellARowTimeThatNobodyKnows)
   EXPECT_NEAR(found.exposure, world.camera().rig.shutter.exposure, 0.05 * truth);
 }
 
+// In one of these frames the border cuts a lamp, whose frequency is 2 % off, and as uncertain.
+TEST(ShutterCalibration, ALampThatTheBorderCutsIsNoWitnessOfAnotherRowTime)
+{
+  vpScenario scenario = vpScenario::load("data/scenarios/spin.yaml");
+  scenario.draw.rowTime = 0.01;
+  scenario.frames = 10;
+  vpSimulation world(scenario, 40);
+  vpVlpRig rig = world.rig();
+  rig.shutter.rowTime = 0;
+  vpShutterCalibration calibration(rig, world.map());
+  for (vpVlpFrame frame; world.next(frame);) {
+    calibration.add(frame);
+  }
+  const vpShutterEstimate found = calibration.solve();
+  ASSERT_TRUE(found.valid) << found.refusal;
+  EXPECT_LT(std::abs(found.rowTime - world.camera().rig.shutter.rowTime), 4 * found.rowTimeSigma);
+}
+
 TEST(ShutterCalibration, ColumnsAreFoundByThemselves)
 {
   vpSimulation world = simulation(6);
