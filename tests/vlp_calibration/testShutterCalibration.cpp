@@ -25,6 +25,18 @@ vpSimulation simulation(std::uint64_t seed)
   return vpSimulation(scenario, seed);
 }
 
+//! What its frames tell where the rig states no row time.
+vpShutterEstimate withoutRowTime(vpSimulation &world)
+{
+  vpVlpRig rig = world.rig();
+  rig.shutter.rowTime = 0;
+  vpShutterCalibration calibration(rig, world.map());
+  for (vpVlpFrame frame; world.next(frame);) {
+    calibration.add(frame);
+  }
+  return calibration.solve();
+}
+
 vpImage<unsigned char> transposed(const vpImage<unsigned char> &I)
 {
   vpImage<unsigned char> turned(I.getWidth(), I.getHeight());
@@ -39,13 +51,7 @@ vpImage<unsigned char> transposed(const vpImage<unsigned char> &I)
 TEST(ShutterCalibration, TenFramesTellARowTimeThatNobodyKnows)
 {
   vpSimulation world = simulation(5);
-  vpVlpRig rig = world.rig();
-  rig.shutter.rowTime = 0;
-  vpShutterCalibration calibration(rig, world.map());
-  for (vpVlpFrame frame; world.next(frame);) {
-    calibration.add(frame);
-  }
-  const vpShutterEstimate found = calibration.solve();
+  const vpShutterEstimate found = withoutRowTime(world);
   ASSERT_TRUE(found.valid) << found.refusal;
   const double truth = world.camera().rig.shutter.rowTime;
   EXPECT_FALSE(found.alongColumns);
@@ -62,13 +68,7 @@ TEST(ShutterCalibration, ALampThatTheBorderCutsIsNoWitnessOfAnotherRowTime)
   scenario.draw.rowTime = 0.01;
   scenario.frames = 10;
   vpSimulation world(scenario, 40);
-  vpVlpRig rig = world.rig();
-  rig.shutter.rowTime = 0;
-  vpShutterCalibration calibration(rig, world.map());
-  for (vpVlpFrame frame; world.next(frame);) {
-    calibration.add(frame);
-  }
-  const vpShutterEstimate found = calibration.solve();
+  const vpShutterEstimate found = withoutRowTime(world);
   ASSERT_TRUE(found.valid) << found.refusal;
   EXPECT_LT(std::abs(found.rowTime - world.camera().rig.shutter.rowTime), 4 * found.rowTimeSigma);
 }
