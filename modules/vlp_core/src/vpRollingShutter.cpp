@@ -145,6 +145,7 @@ vpLineTiming::vpLineTiming(const vpRollingShutter &shutter, const vpPictureResiz
   m_samplePosition.reserve(samples);
   for (unsigned int k = 0; k < samples; ++k) {
     m_samplePosition.push_back((resize.sensorPosition(k, samples, sourceSamples) - offset) / scale);
+    m_aligned = m_aligned && m_samplePosition.back() == static_cast<double>(k);
   }
 }
 

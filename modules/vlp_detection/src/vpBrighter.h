@@ -78,6 +78,16 @@ inline int count(const unsigned char *row, int samples, unsigned char grey)
   return brighter;
 }
 
+//! Of so many samples.
+inline int sum(const unsigned char *row, int samples)
+{
+  int sum = 0, i = 0;
+  for (; i + width <= samples; i += width) {
+    sum += static_cast<int>(cv::v_reduce_sum(cv::v_load(row + i)));
+  }
+  return i < samples ? sum + static_cast<int>(cv::v_reduce_sum(rest(row + i, samples - i))) : sum;
+}
+
 //! Sums over samples.
 struct Sums {
   int all = 0, brighter = 0; // grey levels

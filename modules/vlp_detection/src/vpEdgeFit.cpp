@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -18,8 +19,8 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-//! Reorders them.
-double median(std::vector<double> &values)
+//! Reorders them. 0 where there are none.
+double median(std::vector<float> &values)
 {
   if (values.empty()) {
     return 0;
@@ -27,6 +28,16 @@ double median(std::vector<double> &values)
   const auto middle = values.begin() + static_cast<long>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+//! Of so many grey values.
+unsigned char brightest(const unsigned char *grey, int count)
+{
+  unsigned char most = 0;
+  for (int i = 0; i < count; ++i) {
+    most = std::max(most, grey[i]);
+  }
+  return most;
 }
 
 } // namespace
@@ -41,9 +52,16 @@ void vpEdgeFit<vpQuadrilateralModel>::addEnds(int from, int to)
 template <>
 void vpEdgeFit<vpEllipseModel>::addEnds(int from, int to)
 {
-  vpEllipseEdges::linesOf(*m_lines, from, to, m_model, m_every, m_litOnly, m_memory->lines, m_memory->light);
+  static const size_t some = 16, all = std::numeric_limits<size_t>::max();
+  Listed &listed = m_listed; // as the outline moves by less than a line, lines that were lit are
+  if (!m_litOnly || listed.some != m_some || std::abs(from - listed.from) > 1 ||
+      std::abs(to - listed.to) > 1) {
+    listed = {from, to, m_some};
+    vpEllipseEdges::linesOf(*m_lines, from, to, m_model, m_some ? some : all, m_litOnly, m_memory->lines,
+                            m_memory->light);
+  }
   vpEllipseEdges(*m_lines, *m_v, *m_u, m_aligned, m_model, m_blur, m_shading, m_reach)
-      .find(m_memory->lines, m_memory->ends, m_memory->along);
+      .find(m_memory->lines, !m_some, m_memory->ends, m_memory->along);
 }
 
 template <class Model>
@@ -53,115 +71,72 @@ void vpEdgeFit<Model>::findEnds()
   m_model.vertical(top, bottom);
   const int from = std::max(m_first, static_cast<int>(std::floor(top)) - 1);
   const int to = std::min(m_last, static_cast<int>(std::ceil(bottom)) + 1);
-  m_memory->clear(2 * static_cast<size_t>(std::max(0, to - from + 1)));
+  m_memory->clear(static_cast<size_t>(std::max(0, to - from + 1)));
   addEnds(from, to);
 }
 
-/*!
-  Normal equations of all ends. An end's variance is that of its own residuals or the median of all, whichever
-  is more; an end that would move the edge far beyond what the others want is let go of.
-*/
+//! Of the ends for which \e which is set. Until the next call.
+template <class Model>
+std::vector<float> &vpEdgeFit<Model>::valuesOf(vpLanes::Floats vpLineEnds<N>::*value,
+                                               vpLanes::Integers vpLineEnds<N>::*which) const
+{
+  std::vector<float> &some = m_memory->sorted;
+  some.clear();
+  for (const EightLines &lines : m_memory->ends) {
+    for (const vpLineEnds<N> &end : lines.sides) {
+      for (int lane = 0; lane < vpLanes::count; ++lane) {
+        if ((end.*which)[lane] != 0) {
+          some.push_back((end.*value)[lane]);
+        }
+      }
+    }
+  }
+  return some;
+}
+
+//! Normal equations of all ends.
 template <class Model>
 void vpEdgeFit<Model>::assemble(Equations &equations)
 {
-  const size_t ends = m_memory->ends.size();
-  std::vector<double> &offsets = m_memory->offsets, &sorted = m_memory->sorted;
-  offsets.resize(ends);
-  sorted.resize(ends);
-  for (size_t i = 0; i < ends; ++i) {
-    const End &end = m_memory->ends[i];
-    offsets[i] = end.offset();
-    // What the end's own best shift leaves: from a start a pixel off, all ends misfit, and none is dark for
-    // it.
-    const double left = end.squares - offsets[i] * end.shift;
-    sorted[i] = std::max(0.0, left) / std::max(1, end.pixels - 3);
-  }
-  const double noise = std::max(median(sorted), 0.05); // 8 bits round: 1/12, less where all is dark
-  auto shines = [noise](const End &end) { return end.amplitude > 0 && end.shiftShift > 4 * noise; };
-  sorted.clear();
-  for (size_t i = 0; i < ends; ++i) {
-    if (shines(m_memory->ends[i])) {
-      sorted.push_back(std::abs(offsets[i]));
+  std::vector<EightLines> &ends = m_memory->ends;
+  vpEndSums::judge(ends);
+  std::vector<float> &variances = valuesOf(&vpLineEnds<N>::variance, &vpLineEnds<N>::valid);
+  const double noise = std::max(median(variances), 0.05); // 8 bits round: 1/12, less where all is dark
+  const auto found = static_cast<double>(variances.size());
+  // From a start far off, edges that are where they should not be are what passes for noise.
+  const float clear = m_some ? 0.f : static_cast<float>(4 * noise);
+  for (EightLines &lines : ends) {
+    for (vpLineEnds<N> &end : lines.sides) {
+      end.shines = end.valid & (end.amplitude > 0) & (end.shiftShift > clear);
     }
   }
-  const double scale = 1.4826 * std::max(median(sorted), 0.02);
-  equations = Equations();
-  Equations crossing; // the lower half of what they say that cross their lines
-  sorted.clear();
-  double squares = 0, weights = 0, pixels = 0, chiSquare = 0, members = 0, kept = 0;
-  for (size_t i = 0; i < m_memory->ends.size(); ++i) {
-    const End &end = m_memory->ends[i];
-    if (!shines(end)) {
-      continue;
-    }
-    sorted.push_back(end.background);
-    chiSquare += end.squares;
-    pixels += end.pixels;
-    // An end is no outlier for being noisy: its own doubt widens the limit.
-    const double variance = std::max(end.squares / std::max(1, end.pixels - 2), noise),
-                 own = std::sqrt(variance / end.shiftShift);
-    const double z = offsets[i] / (4.685 * std::max(scale, own));
-    if (std::abs(z) >= 1) {
-      continue;
-    }
-    ++kept;
-    const double tukey = (1 - z * z) * (1 - z * z), weight = tukey / variance;
-    if (end.along >= 0) {
-      equations.H += weight * m_memory->along[static_cast<size_t>(end.along)].H;
-      equations.g += weight * m_memory->along[static_cast<size_t>(end.along)].g;
-    } else {
-      for (int k = 0; k < N - 1; ++k) {
-        const double outward = weight * end.outward(k), shift = end.shiftShift * outward;
-        for (int l = k; l < N - 1; ++l) {
-          crossing.H(l, k) += shift * end.outward(l);
-        }
-        crossing.H(N - 1, k) += end.shiftBlur * outward;
-        crossing.g(k) += end.shift * outward;
+  std::vector<float> &offsets = valuesOf(&vpLineEnds<N>::offset, &vpLineEnds<N>::shines);
+  std::transform(offsets.begin(), offsets.end(), offsets.begin(),
+                 [](float offset) { return std::abs(offset); });
+  const double scale = 1.4826 * std::max(median(offsets), 0.02);
+  vpEndSums::Sums<N> sums;
+  vpEndSums::weigh(ends, noise, scale, sums);
+  equations = sums.equations;
+  for (const EightLines &lines : ends) {
+    const vpLineEnds<N> &end = lines.sides[0];
+    for (int lane = 0; lane < vpLanes::count; ++lane) {
+      if (end.along[lane] >= 0) {
+        const Equations &along = m_memory->along[static_cast<size_t>(end.along[lane])];
+        equations.H += end.weight[lane] * along.H;
+        equations.g += end.weight[lane] * along.g;
       }
-      crossing.H(N - 1, N - 1) += weight * end.blurBlur;
-      crossing.g(N - 1) += weight * end.blur;
     }
-    squares += weight * end.shift * offsets[i];
-    weights += weight * end.shiftShift;
-    members += tukey;
   }
-  equations.H += crossing.H.template selfadjointView<Eigen::Lower>();
-  equations.g += crossing.g;
-  m_residual = weights > 0 ? std::sqrt(squares / weights) : 0;
+  m_residual = sums.shiftShift > 0 ? std::sqrt(sums.shift / sums.shiftShift) : 0;
   // Ends scatter more than their pixels' noise says where the edge is no Gaussian: the covariance is to say
   // so, and the fewer they are the less they know of their own scatter.
-  m_inflation = members > N ? std::max(1.0, squares / (members - N)) * (1 + 2 / (members - N)) : 3;
-  m_background = median(sorted);
+  m_members = sums.members;
+  m_inflation = m_members > N ? std::max(1.0, sums.shift / (m_members - N)) * (1 + 2 / (m_members - N)) : 3;
   m_noise = std::sqrt(noise);
-  m_misfit = pixels > 0 ? chiSquare / pixels : 0;
-  m_pixels = pixels;
-  m_members = members;
-  m_shining = m_memory->ends.empty()
-                  ? 0
-                  : static_cast<double>(sorted.size()) / static_cast<double>(m_memory->ends.size());
-  m_kept = sorted.empty() ? 0 : kept / static_cast<double>(sorted.size());
-}
-
-//! How fast the light grows along the lines, by the amplitudes of their two ends, where both show an edge.
-template <class Model>
-double vpEdgeFit<Model>::shadingOfEnds() const
-{
-  static const double scatter = 0.3; // of an end's amplitude about its other's: more, and something hides it
-  const std::vector<End> &ends = m_memory->ends;
-  double slope = 0, weight = 0;
-  for (size_t i = 1; i < ends.size(); ++i) {
-    const End &first = ends[i - 1], &last = ends[i];
-    const double light = 0.5 * (first.amplitude + last.amplitude), more = last.amplitude - first.amplitude,
-                 length = last.crossing - first.crossing;
-    if (first.line == last.line && first.along < 0 && last.along < 0 && first.amplitude > 0 &&
-        last.amplitude > 0 && std::abs(more) < scatter * light) {
-      slope += more * light * length;
-      weight += light * light * length * length;
-    }
-  }
-  static const double most = 0.2; // of the light, over half of the lamp
-  const double limit = most / m_model.radius();
-  return weight > 0 ? std::clamp(m_shading + slope / weight, -limit, limit) : 0;
+  m_pixels = sums.pixels;
+  m_misfit = m_pixels > 0 ? sums.squares / m_pixels : 0;
+  m_shining = found > 0 ? sums.shining / found : 0;
+  m_kept = sums.shining > 0 ? sums.kept / sums.shining : 0;
 }
 
 /*!
@@ -189,12 +164,12 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
   static const double many = 12; // ends, of all directions by chance alone
   int soft = 0;
   for (int i = 0; i < steps.most; ++i) {
-    m_every = i < sparse ? 3 : 1;
-    m_litOnly = steps.litOnly || i < sparse;
+    m_some = i < sparse;
+    m_litOnly = steps.litOnly || m_some;
     m_reach = std::clamp(3 * m_blur + 2, 4.0, std::max(4.0, 0.4 * m_model.radius()));
     findEnds();
     assemble(equations);
-    if (m_every > 1 && m_members < many) { // the others may all be dark
+    if (m_some && m_members < many) { // the others may all be dark
       sparse = 0;
       continue;
     }
@@ -206,7 +181,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     g = equations.g;
     m_prior = m_model.addPrior(shapeSigma, H, g);
     H.diagonal().array() += 1e-9;
-    if (likely && i < sparse) { // a start that is a little off looks blurred: the blur is held
+    if (likely && m_some) { // a start that is a little off looks blurred: the blur is held
       H.row(N - 1).setZero();
       H.col(N - 1).setZero();
       H(N - 1, N - 1) = 1;
@@ -227,21 +202,23 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     const double before = m_blur, shadingBefore = m_shading;
     static const double close = 0.3; // px: from farther off amplitudes are not yet the light's
     if (outlineStep.cwiseAbs().maxCoeff() < close) {
-      m_shading = shadingOfEnds();
+      static const double most = 0.2; // of the light, over half of the lamp
+      const double limit = most / m_model.radius();
+      m_shading = std::clamp(m_shading + vpEndSums::shading(m_memory->ends), -limit, limit);
     }
     m_blur = std::clamp(before + std::clamp(step(N - 1), -0.5 * before, 0.5 * before), sharpest, widest);
     if (!m_model.plausible(box) || (m_model.centre() - start).norm() > 0.3 * radius + 2) {
       return false;
     }
     static const double near = 0.05; // px: from there all lines together are quicker
-    if (likely && i < sparse && outlineStep.cwiseAbs().maxCoeff() < near) {
+    if (likely && m_some && outlineStep.cwiseAbs().maxCoeff() < near) {
       sparse = i + 1;
       continue;
     }
     static const double ofBlur = 0.05, ofShading = 0.001; // px: blur moves no edge, shading all by as much
     const double byShading = std::abs(m_shading - shadingBefore) * m_reach * m_reach / 3; // px, about
-    if (i >= sparse && outlineStep.cwiseAbs().maxCoeff() < steps.still &&
-        std::abs(m_blur - before) < ofBlur && byShading < ofShading) {
+    if (!m_some && outlineStep.cwiseAbs().maxCoeff() < steps.still && std::abs(m_blur - before) < ofBlur &&
+        byShading < ofShading) {
       break;
     }
   }
@@ -258,22 +235,24 @@ template <class Model>
 double vpEdgeFit<Model>::evenness() const
 {
   double edges = 0, peaks = 0;
-  int line = -1;
-  double peak = 0; // of that line
-  for (const End &end : m_memory->ends) {
-    double first, last;
-    if (!m_model.stretch((*m_v)[end.line], 0, first, last)) {
-      continue;
+  for (const EightLines &lines : m_memory->ends) {
+    for (int lane = 0; lane < vpLanes::count; ++lane) {
+      const int line = lines.line[static_cast<size_t>(lane)];
+      double first, last;
+      if ((lines.sides[0].valid[lane] == 0 && lines.sides[1].valid[lane] == 0) ||
+          !m_model.stretch((*m_v)[static_cast<size_t>(line)], 0, first, last)) {
+        continue;
+      }
+      const int left = std::max(0, static_cast<int>(first)),
+                right = std::min(m_lines->cols - 1, static_cast<int>(last) + 1);
+      const double peak = left < right ? brightest((*m_lines)[line] + left, right - left + 1) : 0.0;
+      for (const vpLineEnds<N> &end : lines.sides) {
+        if (end.valid[lane] != 0) {
+          edges += std::max(0.f, end.amplitude[lane]);
+          peaks += std::max(0.0, peak - end.background[lane]);
+        }
+      }
     }
-    if (end.line != line) {
-      line = end.line;
-      const unsigned char *row = (*m_lines)[line];
-      const int left = std::max(0, static_cast<int>(first));
-      const int right = std::min(m_lines->cols - 1, static_cast<int>(last) + 1);
-      peak = left < right ? *std::max_element(row + left, row + right + 1) : 0.0;
-    }
-    edges += std::max(0.0, end.amplitude);
-    peaks += std::max(0.0, peak - end.background);
   }
   return peaks > 0 ? edges / peaks : 0;
 }
@@ -288,7 +267,7 @@ vpOutlineFit vpEdgeFit<Model>::result() const
   fit.outline.centreCovariance += systematic * systematic * Eigen::Matrix2d::Identity();
   fit.outline.residual = m_residual;
   fit.blur = m_blur;
-  fit.background = m_background;
+  fit.background = median(valuesOf(&vpLineEnds<N>::background, &vpLineEnds<N>::shines));
   fit.noise = m_noise;
   return fit;
 }

@@ -13,6 +13,7 @@
 #include <opencv2/core.hpp>
 #include <visp3/vlp_detection/vpOutlineFitter.h>
 
+#include "vpLineEnds.h"
 #include "vpOutlineModel.h"
 
 BEGIN_VISP_NAMESPACE
@@ -45,34 +46,6 @@ struct vpLineStretch {
 };
 
 /*!
-  One end of one line, its own background and amplitude eliminated: how far it alone would move the edge, and
-  the normal equations of an outward shift of the edge there and of the blur.
-*/
-template <int N>
-struct vpLineEnd {
-  int line = 0;
-  Eigen::Matrix<double, N - 1, 1> outward =
-      Eigen::Matrix<double, N - 1, 1>::Zero(); // shift of the edge by the outline's parameters
-  double shiftShift = 0, shiftBlur = 0, blurBlur = 0, shift = 0, blur = 0;
-  int along = -1;     // of an edge that runs along the line: index of all its normal equations
-  double squares = 0; // sum of squared residuals, grey levels
-  int pixels = 0;
-  double amplitude = 0;  // grey levels, of the lamp's middle
-  double background = 0; // grey value
-  double crossing = 0;   // px along the line from the lamp's middle to its edge there
-
-  //! px outwards.
-  double offset() const { return shift / std::max(shiftShift, 1e-12); }
-};
-
-//! Of the outline's parameters and the blur.
-template <int N>
-struct vpNormalEquations {
-  Eigen::Matrix<double, N, N> H = Eigen::Matrix<double, N, N>::Zero();
-  Eigen::Matrix<double, N, 1> g = Eigen::Matrix<double, N, 1>::Zero();
-};
-
-/*!
   Gauss-Newton fit of an outline to the grey values about the two ends of each lit line: the pixel-integrated
   blurred edge, its blur, and each end's own background and amplitude, so that it does not matter where the
   stripes lie. Lens shading (vignetting) along the lines would move both ends the same way: how much
@@ -85,44 +58,45 @@ class vpEdgeFit
 {
 public:
   static constexpr int N = Model::parameters + 1;
-  using End = vpLineEnd<N>;
+  using EightLines = vpEightLines<N>;
   using Equations = vpNormalEquations<N>;
 
   //! What a fit works on; one after the other may use the same, so that the next takes no memory.
   struct Memory {
-    std::vector<End> ends;
-    std::vector<Equations> along;        // of ends that run along their line
-    std::vector<double> offsets, sorted; // of the ends
-    std::vector<int> lines, light;       // that are looked at, and how bright they are
+    std::vector<EightLines> ends;
+    std::vector<Equations> along;  // of ends that run along their line
+    std::vector<float> sorted;     // of the ends
+    std::vector<int> lines, light; // that are looked at, and how bright they are
 
-    //! \param most Ends that there may be. Memory is taken for twice as many: the next lamp has a line more.
+    //! \param most Lines that there may be. Memory is taken for twice as many: the next lamp has one more.
     void clear(size_t most)
     {
-      static const size_t touched = 64; // ends that run along their line
+      static const size_t touched = 64; // lines that the outline runs along
       ends.clear();
       along.clear();
-      if (sorted.capacity() < most) {
+      if (lines.capacity() < most) {
         along.reserve(touched);
-        ends.reserve(2 * most);
-        offsets.reserve(2 * most);
-        sorted.reserve(2 * most);
+        ends.reserve(2 * most / vpLanes::count + 1);
+        sorted.reserve(4 * most);
         lines.reserve(2 * most);
         light.reserve(2 * most);
       }
     }
   };
 
+  //! \param samplesAligned Each lies where its number says.
   vpEdgeFit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
-            const std::vector<double> &samplePositions, const Model &start, Memory &memory)
-      : m_lines(&lines), m_v(&linePositions), m_u(&samplePositions), m_aligned(aligned(samplePositions)),
+            const std::vector<double> &samplePositions, bool samplesAligned, const Model &start,
+            Memory &memory)
+      : m_lines(&lines), m_v(&linePositions), m_u(&samplePositions), m_aligned(samplesAligned),
         m_model(start), m_memory(&memory)
   {
   }
 
-  //! How to get to the minimum. From a start that is good to a pixel or so a part of the lines will do first.
+  //! How to get to the minimum. From a start that is good to a few pixels some of the lines will do first.
   struct Steps {
     int most;
-    int sparse = 0;       // so many of the first are by a third of the lines, of those that are lit
+    int sparse = 0;       // so many of the first are by a few lines, of those that are lit
     double still = 1e-3;  // px, of the last
     bool litOnly = false; // by lit lines only, all of them
   };
@@ -143,20 +117,11 @@ public:
   double prior() const { return m_prior; }
 
 private:
-  //! Whether each sample lies where its number says.
-  static bool aligned(const std::vector<double> &positions)
-  {
-    for (size_t i = 0; i < positions.size(); ++i) {
-      if (positions[i] != static_cast<double>(i)) {
-        return false;
-      }
-    }
-    return true;
-  }
   void addEnds(int from, int to);
   void findEnds();
   void assemble(Equations &equations);
-  double shadingOfEnds() const;
+  std::vector<float> &valuesOf(vpLanes::Floats vpLineEnds<N>::*value,
+                               vpLanes::Integers vpLineEnds<N>::*which) const;
 
   const cv::Mat_<unsigned char> *m_lines;
   const std::vector<double> *m_v;
@@ -169,12 +134,15 @@ private:
   double m_reach = 0;   // px on either side of the edge
   // Lines that are looked at: the region's and a few beyond, as others show nothing of it.
   int m_first = 0, m_last = 0;
-  int m_every = 1;        // so many lines are looked at one of, eight at a time
+  bool m_some = false; // only a few lit lines are looked at, evenly spread
+  struct Listed {
+    int from = 0, to = -1;
+    bool some = false;
+  } m_listed;             // in m_memory
   bool m_litOnly = false; // dark lines are not looked at
   Eigen::Matrix<double, N, N> m_covariance = Eigen::Matrix<double, N, N>::Zero();
   double m_residual = 0;
   double m_inflation = 1;
-  double m_background = 0;
   double m_noise = 0;
   double m_misfit = 0;
   double m_pixels = 0;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include <visp3/vlp_core/vpSimdClones.h>
 
@@ -25,26 +27,32 @@ using vpEllipseLanes::Place;
 using vpLanes::all;
 using vpLanes::Floats;
 using vpLanes::Integers;
+using vpLanes::Unsigned;
 constexpr int lanes = vpLanes::count;
 
 //! Eight ends of lines.
-struct Ends {
+struct alignas(vpLanes::alignment) Ends {
   std::array<const unsigned char *, lanes> row; // of each line
   std::array<int, lanes> from, pixels;          // samples; no pixels: it is none
+  int samples;                                  // of a line
   Floats v, crossing;                           // px from the ellipse's middle
 };
 
-//! What vpLineEnd says of each.
-struct Found {
-  std::array<Floats, 5> outward;
-  Floats shiftShift, shiftBlur, blurBlur, shift, blur, squares, amplitude, background;
-  Integers valid;
-};
+//! Grey values of four samples from \e first on, the first one in the lowest byte; 0 beyond the line's end.
+//! \param samples Of the line, four or more.
+VP_LANES_INLINE std::uint32_t fourOf(const unsigned char *row, int first, int samples)
+{
+  std::uint32_t four;
+  const int beyond = std::max(0, first + 4 - samples);
+  std::memcpy(&four, row + first - beyond, sizeof(four));
+  return beyond == 0 ? four : beyond < 4 ? four >> (8 * beyond) : 0;
+}
 
 VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellipse &ellipse, bool sharp,
-                            Found &found)
+                            vpEllipseEdges::LineEnds &found)
 {
   const int longest = *std::max_element(ends.pixels.begin(), ends.pixels.end());
+  const vpEllipseLanes::SmoothEdge smooth(ellipse.blur);
   const Place crossing = vpEllipseLanes::placeOf(ellipse, ends.crossing, ends.v);
   found.outward = vpEllipseLanes::outwardAt(crossing);
   Floats reference, count, first; // first: of the samples, px from the ellipse's middle
@@ -58,12 +66,16 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
   // Sums of grey value I, share D, its derivatives by shift S and blur B, and of their products.
   Floats I{}, D{}, S{}, B{}, II{}, DI{}, DD{}, SI{}, SD{}, SS{}, BI{}, BD{}, BS{}, BB{};
   Floats most = all(0), least = all(1);
+  Unsigned four{}; // grey values of each line, the next one in the lowest byte
   for (int k = 0; k < longest; ++k) {
-    Floats grey, u;
-    for (int lane = 0; lane < lanes; ++lane) {
-      const int last = std::max(0, ends.pixels[lane] - 1);
-      grey[lane] = ends.row[lane][ends.from[lane] + std::min(k, last)];
+    if (k % 4 == 0) {
+      for (int lane = 0; lane < lanes; ++lane) {
+        four[lane] = fourOf(ends.row[lane], ends.from[lane] + k, ends.samples);
+      }
     }
+    const Floats grey = __builtin_convertvector(reinterpret_cast<Integers>(four & 0xff), Floats);
+    four >>= 8;
+    Floats u;
     const Floats member = vpLanes::select(count > static_cast<float>(k), all(1), all(0));
     if (ellipse.aligned) {
       u = first + static_cast<float>(k);
@@ -76,7 +88,7 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
     const Floats distance = vpEllipseLanes::placeOf(ellipse, u, ends.v).distance;
     const Edge edge =
         sharp ? vpEllipseLanes::sharpEdge(distance, crossing.normalU, crossing.normalV, ellipse.blur)
-              : vpEllipseLanes::smoothEdge(distance, ellipse.blur);
+              : smooth.at(distance);
     const Floats light = member * (1 + ellipse.shading * u);
     const Floats i = member * (grey - reference), d = light * edge.share, s = light * edge.byShift,
                  b = light * edge.byBlur;
@@ -101,15 +113,19 @@ VP_SIMD_CLONES void measure(const Ends &ends, const double *samples, const Ellip
   const Floats perPixel = 1 / vpLanes::most(count, all(1));
   const Floats dd = DD - D * D * perPixel, di = DI - D * I * perPixel, sd = SD - S * D * perPixel,
                bd = BD - B * D * perPixel, a = di / dd, aa = a * a;
-  found.amplitude = a;
-  found.background = reference + (I - a * D) * perPixel;
-  found.squares = vpLanes::most(II - I * I * perPixel - di * a, all(0));
-  found.shiftShift = aa * (SS - S * S * perPixel - sd * sd / dd);
-  found.shiftBlur = aa * (BS - B * S * perPixel - bd * sd / dd);
-  found.blurBlur = aa * (BB - B * B * perPixel - bd * bd / dd);
-  found.shift = a * (SI - S * I * perPixel - sd * a);
-  found.blur = a * (BI - B * I * perPixel - bd * a);
-  found.valid = (most >= vpEdgeLimits::lit) & (least <= vpEdgeLimits::unlit);
+  const Integers valid = (count > 0) & (most >= vpEdgeLimits::lit) & (least <= vpEdgeLimits::unlit);
+  auto known = [&valid](const Floats &value) { return vpLanes::select(valid, value, all(0)); };
+  found.valid = valid;
+  found.crossing = ends.crossing;
+  found.pixels = count;
+  found.amplitude = known(a);
+  found.background = known(reference + (I - a * D) * perPixel);
+  found.squares = known(vpLanes::most(II - I * I * perPixel - di * a, all(0)));
+  found.shiftShift = known(aa * (SS - S * S * perPixel - sd * sd / dd));
+  found.shiftBlur = known(aa * (BS - B * S * perPixel - bd * sd / dd));
+  found.blurBlur = known(aa * (BB - B * B * perPixel - bd * bd / dd));
+  found.shift = known(a * (SI - S * I * perPixel - sd * a));
+  found.blur = known(a * (BI - B * I * perPixel - bd * a));
 }
 
 //! One line that the outline touches. Columns: 1, D, I, S; then the derivatives of D by the parameters and B.
@@ -125,6 +141,7 @@ struct Touch {
 
 VP_SIMD_CLONES void measure(Touch &touch, const Ellipse &ellipse, bool sharp)
 {
+  const vpEllipseLanes::SmoothEdge smooth(ellipse.blur);
   std::array<std::array<Floats, Touch::all>, Touch::all> sums{};
   Floats most = all(0), least = all(1);
   for (int k = 0; k < touch.pixels; k += lanes) {
@@ -138,7 +155,7 @@ VP_SIMD_CLONES void measure(Touch &touch, const Ellipse &ellipse, bool sharp)
     }
     const Place at = vpEllipseLanes::placeOf(ellipse, u, all(touch.v));
     const Edge edge = sharp ? vpEllipseLanes::sharpEdge(at.distance, at.normalU, at.normalV, ellipse.blur)
-                            : vpEllipseLanes::smoothEdge(at.distance, ellipse.blur);
+                            : smooth.at(at.distance);
     std::array<Floats, Touch::all> column;
     const Floats light = member * (1 + ellipse.shading * u);
     column[Touch::one] = member;
@@ -183,7 +200,7 @@ VP_SIMD_CLONES void chords(const Ellipse &ellipse, const Floats &v, Chord &outer
 }
 
 //! What is left of the sums once a mean and a multiple of D are taken off, as an end of a line.
-bool reduce(const Touch &touch, vpEllipseEdges::End &end, vpEllipseEdges::Equations &equations)
+bool reduce(const Touch &touch, int lane, vpEllipseEdges::LineEnds &end, vpEllipseEdges::Equations &equations)
 {
   if (touch.most < vpEdgeLimits::lit || touch.least > vpEdgeLimits::unlit) {
     return false;
@@ -200,45 +217,27 @@ bool reduce(const Touch &touch, vpEllipseEdges::End &end, vpEllipseEdges::Equati
   const double DD = sums(Touch::share, Touch::share), a = sums(Touch::share, Touch::grey) / DD;
   const Column ofShare = sums.col(Touch::share) / DD;
   sums -= DD * ofShare * ofShare.transpose();
-  end.amplitude = a;
-  end.background = touch.reference + mean(Touch::grey) - a * mean(Touch::share);
-  end.squares = std::max(0.0, sums(Touch::grey, Touch::grey));
-  end.pixels = touch.pixels;
-  end.shiftShift = a * a * sums(Touch::shift, Touch::shift);
-  end.shift = a * sums(Touch::shift, Touch::grey);
+  end.amplitude[lane] = static_cast<float>(a);
+  end.background[lane] = static_cast<float>(touch.reference + mean(Touch::grey) - a * mean(Touch::share));
+  end.squares[lane] = static_cast<float>(std::max(0.0, sums(Touch::grey, Touch::grey)));
+  end.pixels[lane] = static_cast<float>(touch.pixels);
+  end.shiftShift[lane] = static_cast<float>(a * a * sums(Touch::shift, Touch::shift));
+  end.shift[lane] = static_cast<float>(a * sums(Touch::shift, Touch::grey));
+  end.valid[lane] = -1;
   constexpr int N = Touch::all - Touch::first;
   equations.H = a * a * sums.bottomRightCorner<N, N>();
   equations.g = a * sums.col(Touch::grey).tail<N>();
   return true;
 }
-
-vpEllipseEdges::End endOf(const Found &side, int lane)
-{
-  vpEllipseEdges::End end;
-  for (Eigen::Index p = 0; p < end.outward.size(); ++p) {
-    end.outward(p) = side.outward[static_cast<size_t>(p)][lane];
-  }
-  end.shiftShift = side.shiftShift[lane];
-  end.shiftBlur = side.shiftBlur[lane];
-  end.blurBlur = side.blurBlur[lane];
-  end.shift = side.shift[lane];
-  end.blur = side.blur[lane];
-  end.squares = side.squares[lane];
-  end.amplitude = side.amplitude[lane];
-  end.background = side.background[lane];
-  return end;
-}
 } // namespace
 
 void vpEllipseEdges::linesOf(const cv::Mat_<unsigned char> &lines, int from, int to,
-                             const vpEllipseModel &model, int every, bool litOnly, std::vector<int> &some,
+                             const vpEllipseModel &model, size_t most, bool litOnly, std::vector<int> &some,
                              std::vector<int> &light)
 {
   some.clear();
-  for (int block = from; block <= to; block += lanes * every) {
-    for (int line = block; line <= std::min(to, block + lanes - 1); ++line) {
-      some.push_back(line);
-    }
+  for (int line = from; line <= to; ++line) {
+    some.push_back(line);
   }
   if (!litOnly || some.empty()) {
     return;
@@ -251,19 +250,25 @@ void vpEllipseEdges::linesOf(const cv::Mat_<unsigned char> &lines, int from, int
     const unsigned char *row = lines[line] + middle;
     light.push_back(row[-2 * apart] + row[-apart] + row[0] + row[apart] + row[2 * apart]);
   }
-  const auto [least, most] = std::minmax_element(light.begin(), light.end());
+  const auto [darkest, brightest] = std::minmax_element(light.begin(), light.end());
   static const double dark = 0.2; // share of the swing
-  const double limit = *least + dark * (*most - *least);
+  const double limit = *darkest + dark * (*brightest - *darkest);
   size_t kept = 0;
   for (size_t i = 0; i < some.size(); ++i) {
     if (light[i] >= limit) {
       some[kept++] = some[i];
     }
   }
+  if (kept > most) { // evenly, the middle of each share
+    for (size_t i = 0; i < most; ++i) {
+      some[i] = some[(2 * i + 1) * kept / (2 * most)];
+    }
+    kept = most;
+  }
   some.resize(kept);
 }
 
-void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,
+void vpEllipseEdges::find(const std::vector<int> &lines, bool touched, std::vector<EightLines> &ends,
                           std::vector<Equations> &along) const
 {
   const Eigen::Matrix2d &shape = m_model.shape();
@@ -279,37 +284,18 @@ void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,
                         centre.y(),
                         m_aligned};
   const bool sharp = m_blur <= vpEdgeLimits::sharp;
-  auto touchAt = [&](int line, float v, double first, double last) {
-    const vpLineStretch stretch(centre.x() + first, centre.x() + last, m_lines.cols);
-    if (!stretch.enough()) {
-      return;
-    }
-    Touch touch{m_lines[line] + stretch.from,
-                m_u.data() + stretch.from,
-                stretch.to - stretch.from + 1,
-                v,
-                0,
-                {},
-                0,
-                0};
-    touch.reference = 0.5f * static_cast<float>(touch.pixel[0] + touch.pixel[touch.pixels / 2]);
-    measure(touch, ellipse, sharp);
-    End end;
-    Equations equations;
-    if (reduce(touch, end, equations)) {
-      end.line = line;
-      end.along = static_cast<int>(along.size());
-      along.push_back(equations);
-      ends.push_back(end);
-    }
-  };
   const int count = static_cast<int>(lines.size());
   for (int block = 0; block < count; block += lanes) {
-    auto lineOf = [&](int lane) { return lines[static_cast<size_t>(std::min(block + lane, count - 1))]; };
+    ends.emplace_back();
+    EightLines &eight = ends.back();
     std::array<Ends, 2> sides; // where the outline begins on the line, and where it ends
-    Floats v;
+    sides[0].samples = sides[1].samples = m_lines.cols;
+    alignas(vpLanes::alignment) Floats v;
     for (int lane = 0; lane < lanes; ++lane) {
-      v[lane] = static_cast<float>(m_v[static_cast<size_t>(lineOf(lane))] - centre.y());
+      const int line = lines[static_cast<size_t>(std::min(block + lane, count - 1))];
+      eight.line[static_cast<size_t>(lane)] = line;
+      v[lane] = static_cast<float>(m_v[static_cast<size_t>(line)] - centre.y());
+      sides[0].row[lane] = sides[1].row[lane] = m_lines[line];
     }
     Chord outer, edge, inner;
     chords(ellipse, v, outer, edge, inner);
@@ -319,17 +305,15 @@ void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,
       side.v = v;
       side.pixels.fill(0);
       side.from.fill(0);
-      for (int lane = 0; lane < lanes; ++lane) {
-        side.row[lane] = m_lines[lineOf(lane)];
-      }
     }
-    bool any = false;
+    std::array<bool, lanes> touches{};
+    bool any = false, anyTouches = false;
     for (int lane = 0; lane < lanes && block + lane < count; ++lane) {
       if (edge.meets[lane] == 0 || outer.meets[lane] == 0) {
         continue;
       }
       if (inner.meets[lane] == 0 || inner.last[lane] - inner.first[lane] <= 1) {
-        touchAt(lineOf(lane), v[lane], outer.first[lane], outer.last[lane]);
+        touches[static_cast<size_t>(lane)] = anyTouches = touched;
         continue;
       }
       auto place = [&](Ends &side, double first, double last) {
@@ -343,22 +327,45 @@ void vpEllipseEdges::find(const std::vector<int> &lines, std::vector<End> &ends,
       place(sides[0], outer.first[lane], inner.first[lane]);
       place(sides[1], inner.last[lane], outer.last[lane]);
     }
-    if (!any) {
-      continue;
+    if (any) {
+      measure(sides[0], m_u.data(), ellipse, sharp, eight.sides[0]);
+      measure(sides[1], m_u.data(), ellipse, sharp, eight.sides[1]);
     }
-    std::array<Found, 2> found;
-    measure(sides[0], m_u.data(), ellipse, sharp, found[0]);
-    measure(sides[1], m_u.data(), ellipse, sharp, found[1]);
-    for (int lane = 0; lane < lanes; ++lane) {
-      for (size_t s = 0; s < 2; ++s) {
-        if (sides[s].pixels[lane] > 0 && found[s].valid[lane] != 0) {
-          ends.push_back(endOf(found[s], lane));
-          ends.back().line = lineOf(lane);
-          ends.back().crossing = sides[s].crossing[lane];
-          ends.back().pixels = sides[s].pixels[lane];
-        }
+    for (int lane = 0; lane < lanes && anyTouches; ++lane) {
+      if (touches[static_cast<size_t>(lane)]) {
+        touch(ellipse, sharp, {centre.x() + outer.first[lane], centre.x() + outer.last[lane], m_lines.cols},
+              v[lane], lane, eight, along);
       }
     }
+  }
+}
+
+//! A line that the outline touches, or comes near: its direction changes from pixel to pixel.
+void vpEllipseEdges::touch(const vpEllipseLanes::Ellipse &ellipse, bool sharp, const vpLineStretch &stretch,
+                           float v, int lane, EightLines &eight, std::vector<Equations> &along) const
+{
+  if (!stretch.enough()) {
+    return;
+  }
+  Touch touch{m_lines[eight.line[static_cast<size_t>(lane)]] + stretch.from,
+              m_u.data() + stretch.from,
+              stretch.to - stretch.from + 1,
+              v,
+              0,
+              {},
+              0,
+              0};
+  touch.reference = 0.5f * static_cast<float>(touch.pixel[0] + touch.pixel[touch.pixels / 2]);
+  measure(touch, ellipse, sharp);
+  LineEnds &end = eight.sides[0];
+  Equations equations;
+  for (Floats &outward : end.outward) {
+    outward[lane] = 0;
+  }
+  end.shiftBlur[lane] = end.blurBlur[lane] = end.blur[lane] = 0;
+  if (reduce(touch, lane, end, equations)) {
+    end.along[lane] = static_cast<int>(along.size());
+    along.push_back(equations);
   }
 }
 

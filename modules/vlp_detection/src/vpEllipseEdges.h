@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vpEdgeFit.h"
+#include "vpEllipseLanes.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -18,7 +19,8 @@ BEGIN_VISP_NAMESPACE
 class vpEllipseEdges
 {
 public:
-  using End = vpLineEnd<vpEllipseModel::parameters + 1>;
+  using EightLines = vpEightLines<vpEllipseModel::parameters + 1>;
+  using LineEnds = vpLineEnds<vpEllipseModel::parameters + 1>;
   using Equations = vpNormalEquations<vpEllipseModel::parameters + 1>;
 
   //! \param v, u Positions of the lines and of the samples, px. \param aligned Each sample lies where its
@@ -33,18 +35,22 @@ public:
   }
 
   /*!
-    Of the lines from \e from to \e to one of \e every eight; only those that are lit in their middle, about,
-    where \e litOnly: the ends of others show nothing. \param some Takes their numbers. \param light For its
-    memory.
+    The lines from \e from to \e to; where \e litOnly those that are lit in their middle, about, as the ends
+    of others show nothing, and of these \e most at most, evenly spread. \param some Takes their numbers.
+    \param light For its memory.
   */
   static void linesOf(const cv::Mat_<unsigned char> &lines, int from, int to, const vpEllipseModel &model,
-                      int every, bool litOnly, std::vector<int> &some, std::vector<int> &light);
+                      size_t most, bool litOnly, std::vector<int> &some, std::vector<int> &light);
 
-  //! Appends the ends of these lines; where the outline runs along a line, one end for both, whose equations
-  //! are appended to \e along.
-  void find(const std::vector<int> &lines, std::vector<End> &ends, std::vector<Equations> &along) const;
+  //! Appends the ends of these lines; where the outline runs along a line, and \e touched asks for it, its
+  //! first one for both, whose equations are appended to \e along.
+  void find(const std::vector<int> &lines, bool touched, std::vector<EightLines> &ends,
+            std::vector<Equations> &along) const;
 
 private:
+  void touch(const vpEllipseLanes::Ellipse &ellipse, bool sharp, const vpLineStretch &stretch, float v,
+             int lane, EightLines &eight, std::vector<Equations> &along) const;
+
   const cv::Mat_<unsigned char> &m_lines;
   const std::vector<double> &m_v, &m_u;
   const vpEllipseModel &m_model;

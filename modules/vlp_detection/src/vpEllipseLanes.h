@@ -32,7 +32,7 @@ struct Ellipse {
 };
 
 //! Where lines meet the ellipse grown by some distance, px from its middle.
-struct Chord {
+struct alignas(vpLanes::alignment) Chord {
   Floats first, last;
   Integers meets;
 };
@@ -85,13 +85,23 @@ struct Edge {
 };
 
 //! A Gaussian of the same variance takes the place of the pixel's square.
-VP_LANES_INLINE Edge smoothEdge(const Floats &distance, float blur)
+class SmoothEdge
 {
-  const float perSpread = 1 / std::sqrt(blur * blur + 1 / 12.f);
-  const Floats z = -distance * perSpread;
-  const vpLanes::Normal normal = vpLanes::normal(z);
-  return {normal.below, normal.density * perSpread, -z * normal.density * (blur * perSpread * perSpread)};
-}
+public:
+  explicit SmoothEdge(float blur)
+      : m_perSpread(1 / std::sqrt(blur * blur + 1 / 12.f)), m_byBlur(blur * m_perSpread * m_perSpread)
+  {
+  }
+  VP_LANES_INLINE Edge at(const Floats &distance) const
+  {
+    const Floats z = -distance * m_perSpread;
+    const vpLanes::Normal normal = vpLanes::normal(z);
+    return {normal.below, normal.density * m_perSpread, -z * normal.density * m_byBlur};
+  }
+
+private:
+  float m_perSpread, m_byBlur;
+};
 
 VP_LANES_INLINE Edge sharpEdge(const Floats &distance, const Floats &normalU, const Floats &normalV,
                                float blur)

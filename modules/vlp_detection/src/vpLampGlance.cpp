@@ -7,19 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vpBrighter.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! Sum of grey values.
-int lightOf(const unsigned char *pixel, int pixels)
-{
-  int sum = 0;
-  for (int i = 0; i < pixels; ++i) {
-    sum += pixel[i];
-  }
-  return sum;
-}
 //! Whether all of it lies in the picture, and what is beside it.
 bool whole(const vpLampOutline &outline, double blur, const vpLinePicture &picture)
 {
@@ -61,9 +54,9 @@ bool vpLampGlance::findOutline(const vpLinePicture &picture, const vpLineTiming 
   const cv::Rect around(static_cast<int>(box(0)), static_cast<int>(box(1)),
                         static_cast<int>(std::ceil(box(2) - box(0))),
                         static_cast<int>(std::ceil(box(3) - box(1))));
-  vpEdgeFit<vpEllipseModel> ellipse(picture.grey, timing.linePositions(), timing.samplePositions(),
-                                    vpEllipseModel(outline.centre, outline.a, outline.b, outline.angle),
-                                    m_edges);
+  vpEdgeFit<vpEllipseModel> ellipse(
+      picture.grey, timing.linePositions(), timing.samplePositions(), timing.samplesAligned(),
+      vpEllipseModel(outline.centre, outline.a, outline.b, outline.angle), m_edges);
   if (!ellipse.run(around, shapeSigma, steps, before.blur) || ellipse.kept() < nearlyAll ||
       ellipse.shining() < nearlyAll || ellipse.prior() > rare || ellipse.evenness() < evenEdge) {
     return false;
@@ -101,7 +94,7 @@ void vpLampGlance::readProfile(const vpLinePicture &picture, const vpLineTiming 
       continue;
     }
     const double light =
-        static_cast<double>(lightOf(picture.grey[line] + left, pixels)) / pixels - fit.background;
+        static_cast<double>(vpBrighter::sum(picture.grey[line] + left, pixels)) / pixels - fit.background;
     m_profile.time.push_back(timing.middle(static_cast<unsigned int>(line)));
     m_profile.light.push_back(light);
     m_profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(pixels));

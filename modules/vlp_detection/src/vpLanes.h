@@ -6,6 +6,7 @@
 #define vpLanes_h
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -21,6 +22,9 @@ BEGIN_VISP_NAMESPACE
 namespace vpLanes
 {
 constexpr int count = 8;
+//! Of structs of vectors that several functions see: those of one instruction set take another alignment for
+//! granted than those of another.
+constexpr size_t alignment = count * sizeof(float);
 using Floats = float __attribute__((vector_size(count * sizeof(float))));
 using Integers = std::int32_t __attribute__((vector_size(count * sizeof(std::int32_t))));
 using Unsigned = std::uint32_t __attribute__((vector_size(count * sizeof(std::uint32_t))));

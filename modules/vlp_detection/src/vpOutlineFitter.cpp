@@ -112,6 +112,16 @@ void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines,
   outline.centreCovariance = (0.5 * outline.diameter() * doubt).cwiseAbs2().asDiagonal();
 }
 
+//! Whether each sample lies where its number says.
+bool isAligned(const std::vector<double> &positions)
+{
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (positions[i] != static_cast<double>(i)) {
+      return false;
+    }
+  }
+  return true;
+}
 } // namespace
 
 vpOutlineFit vpOutlineFitter::boxOf(const vpLedRoi &roi)
@@ -148,14 +158,15 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
   const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
   vpEdgeFit<vpEllipseModel>::Memory memory;
-  vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, start, memory);
+  const bool aligned = isAligned(samplePositions);
+  vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, aligned, start, memory);
   // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
   static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
   const bool whole = roi.lampness > nearlyPerfect * vpChordShape::mostLampness(2 * roi.box.height);
   bool isEllipse = whole && ellipse.run(roi.box, shapeSigma, {maxIterations, 2, 0.005, true}, likelyBlur) &&
                    ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
   if (!isEllipse) {
-    ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, start, memory);
+    ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, aligned, start, memory);
     isEllipse = ellipse.run(roi.box, shapeSigma, {maxIterations}) && holds(ellipse.result(), roi);
   }
   if (isEllipse) {
@@ -169,7 +180,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
       maySquare ? vpChordShape::rectangleMisfit(ends) : std::numeric_limits<double>::infinity();
   if (sidesMisfit <= 3 * ellipseMisfit) {
     vpEdgeFit<vpQuadrilateralModel>::Memory ofSides;
-    vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions,
+    vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions, aligned,
                                           vpQuadrilateralModel::from(ends), ofSides);
     if (sides.run(roi.box, shapeSigma, {maxIterations}) && sides.evenness() > evenEdge &&
         holds(sides.result(), roi)) {

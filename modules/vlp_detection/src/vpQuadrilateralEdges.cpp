@@ -24,13 +24,12 @@ double without(double ab, double aD, double bD, double DD)
 } // namespace
 
 //! Where the outline crosses the line.
-void vpQuadrilateralEdges::addCrossing(int line, const vpLineStretch &pixels, double crossing,
-                                       std::vector<End> &ends) const
+void vpQuadrilateralEdges::setCrossing(int line, const vpLineStretch &pixels, double crossing, int lane,
+                                       LineEnds &end) const
 {
   if (!pixels.enough()) {
     return;
   }
-  End end;
   vpQuadrilateralModel::Vector derivative;
   Eigen::Vector2d normal;
   m_model.distance({crossing, m_v[line]}, derivative, normal);
@@ -73,23 +72,25 @@ void vpQuadrilateralEdges::addCrossing(int line, const vpLineStretch &pixels, do
   SD = centred(SD, S, D);
   BD = centred(BD, B, D);
   const double a = DI / DD;
-  end.line = line;
-  end.crossing = crossing - m_shading.middle;
-  end.outward = -derivative;
-  end.amplitude = a;
-  end.background = (I - a * D) * perPixel;
-  end.squares = std::max(0.0, without(centred(II, I, I), DI, DI, DD));
-  end.pixels = n;
-  end.shiftShift = a * a * without(centred(SS, S, S), SD, SD, DD);
-  end.shiftBlur = a * a * without(centred(BS, B, S), BD, SD, DD);
-  end.blurBlur = a * a * without(centred(BB, B, B), BD, BD, DD);
-  end.shift = a * without(centred(SI, S, I), SD, DI, DD);
-  end.blur = a * without(centred(BI, B, I), BD, DI, DD);
-  ends.push_back(end);
+  for (size_t k = 0; k < end.outward.size(); ++k) {
+    end.outward[k][lane] = static_cast<float>(-derivative(static_cast<Eigen::Index>(k)));
+  }
+  auto set = [lane](vpLanes::Floats &values, double value) { values[lane] = static_cast<float>(value); };
+  set(end.crossing, crossing - m_shading.middle);
+  set(end.amplitude, a);
+  set(end.background, (I - a * D) * perPixel);
+  set(end.squares, std::max(0.0, without(centred(II, I, I), DI, DI, DD)));
+  set(end.pixels, n);
+  set(end.shiftShift, a * a * without(centred(SS, S, S), SD, SD, DD));
+  set(end.shiftBlur, a * a * without(centred(BS, B, S), BD, SD, DD));
+  set(end.blurBlur, a * a * without(centred(BB, B, B), BD, BD, DD));
+  set(end.shift, a * without(centred(SI, S, I), SD, DI, DD));
+  set(end.blur, a * without(centred(BI, B, I), BD, DI, DD));
+  end.valid[lane] = -1;
 }
 
 //! Where the outline touches the line, or comes near: its direction changes from pixel to pixel.
-void vpQuadrilateralEdges::addAlong(int line, const vpLineStretch &pixels, std::vector<End> &ends,
+void vpQuadrilateralEdges::setAlong(int line, const vpLineStretch &pixels, int lane, LineEnds &end,
                                     std::vector<Equations> &along) const
 {
   if (!pixels.enough()) {
@@ -125,38 +126,46 @@ void vpQuadrilateralEdges::addAlong(int line, const vpLineStretch &pixels, std::
   const double DD = sums(share, share), a = sums(share, grey) / DD;
   const Column ofShare = sums.col(share) / DD;
   sums -= DD * ofShare * ofShare.transpose();
-  End end;
-  end.line = line;
-  end.amplitude = a;
-  end.background = mean(grey) - a * mean(share);
-  end.squares = std::max(0.0, sums(grey, grey));
-  end.pixels = pixels.to - pixels.from + 1;
-  end.shiftShift = a * a * sums(shift, shift);
-  end.shift = a * sums(shift, grey);
-  end.along = static_cast<int>(along.size());
+  auto set = [lane](vpLanes::Floats &values, double value) { values[lane] = static_cast<float>(value); };
+  set(end.amplitude, a);
+  set(end.background, mean(grey) - a * mean(share));
+  set(end.squares, std::max(0.0, sums(grey, grey)));
+  set(end.pixels, pixels.to - pixels.from + 1);
+  set(end.shiftShift, a * a * sums(shift, shift));
+  set(end.shift, a * sums(shift, grey));
+  end.along[lane] = static_cast<int>(along.size());
+  end.valid[lane] = -1;
   along.push_back({a * a * sums.bottomRightCorner<N, N>(), a * sums.col(grey).tail<N>()});
-  ends.push_back(end);
 }
 
-void vpQuadrilateralEdges::find(int from, int to, std::vector<End> &ends, std::vector<Equations> &along) const
+void vpQuadrilateralEdges::find(int from, int to, std::vector<EightLines> &ends,
+                                std::vector<Equations> &along) const
 {
+  int lane = vpLanes::count;
   for (int line = from; line <= to; ++line) {
     const double v = m_v[line];
     double outerFirst, outerLast, first, last, innerFirst, innerLast;
     if (!m_model.stretch(v, 0, first, last) || !m_model.stretch(v, m_reach, outerFirst, outerLast)) {
       continue;
     }
+    if (lane == vpLanes::count) {
+      ends.emplace_back();
+      lane = 0;
+    }
+    std::array<LineEnds, 2> &sides = ends.back().sides;
+    ends.back().line[static_cast<size_t>(lane)] = line;
     // Where the outline crosses the line at a slant, the same distance from the edge is a longer stretch.
     if (m_model.stretch(v, -m_reach, innerFirst, innerLast) && innerLast - innerFirst > 1) {
       if (m_model.crossedWell(v, true, false)) {
-        addCrossing(line, vpLineStretch(outerFirst, innerFirst, m_lines.cols), first, ends);
+        setCrossing(line, vpLineStretch(outerFirst, innerFirst, m_lines.cols), first, lane, sides[0]);
       }
       if (m_model.crossedWell(v, false, true)) {
-        addCrossing(line, vpLineStretch(innerLast, outerLast, m_lines.cols), last, ends);
+        setCrossing(line, vpLineStretch(innerLast, outerLast, m_lines.cols), last, lane, sides[1]);
       }
     } else if (m_model.crossedWell(v, true, true)) {
-      addAlong(line, vpLineStretch(outerFirst, outerLast, m_lines.cols), ends, along);
+      setAlong(line, vpLineStretch(outerFirst, outerLast, m_lines.cols), lane, sides[0], along);
     }
+    ++lane;
   }
 }
 

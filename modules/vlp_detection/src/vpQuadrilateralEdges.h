@@ -15,7 +15,8 @@ BEGIN_VISP_NAMESPACE
 class vpQuadrilateralEdges
 {
 public:
-  using End = vpLineEnd<vpQuadrilateralModel::parameters + 1>;
+  using EightLines = vpEightLines<vpQuadrilateralModel::parameters + 1>;
+  using LineEnds = vpLineEnds<vpQuadrilateralModel::parameters + 1>;
   using Equations = vpNormalEquations<vpQuadrilateralModel::parameters + 1>;
 
   //! \param v, u Positions of the lines and of the samples, px. \param reach px on either side of the edge.
@@ -26,13 +27,13 @@ public:
   {
   }
 
-  //! Appends the ends of the lines from \e from to \e to; where the outline runs along a line, one end for
-  //! both, whose equations are appended to \e along.
-  void find(int from, int to, std::vector<End> &ends, std::vector<Equations> &along) const;
+  //! Appends the ends of the lines from \e from to \e to; where the outline runs along a line, its first one
+  //! for both, whose equations are appended to \e along.
+  void find(int from, int to, std::vector<EightLines> &ends, std::vector<Equations> &along) const;
 
 private:
-  void addCrossing(int line, const vpLineStretch &pixels, double crossing, std::vector<End> &ends) const;
-  void addAlong(int line, const vpLineStretch &pixels, std::vector<End> &ends,
+  void setCrossing(int line, const vpLineStretch &pixels, double crossing, int lane, LineEnds &end) const;
+  void setAlong(int line, const vpLineStretch &pixels, int lane, LineEnds &end,
                 std::vector<Equations> &along) const;
 
   const cv::Mat_<unsigned char> &m_lines;

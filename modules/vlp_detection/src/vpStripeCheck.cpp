@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -37,12 +38,19 @@ bool vpStripeCheck::compare(const vpStripeProfile &profile, const vpStripeFeatur
 
   // The first harmonic peaks in the middle of the pulse.
   const double mean = lights.mean(), turn = 2 * M_PI * known.frequency;
-  double cosines = 0, sines = 0;
+  std::complex<double> harmonic = 0, direction = std::polar(1.0, turn * times(0)), step = 1;
+  double apart = 0; // s, that the step is of: lines are mostly as far apart as those before
   for (Eigen::Index i = 0; i < n; ++i) {
-    cosines += (lights(i) - mean) * std::cos(turn * times(i));
-    sines += (lights(i) - mean) * std::sin(turn * times(i));
+    harmonic += (lights(i) - mean) * direction;
+    const double next = i + 1 < n ? times(i + 1) - times(i) : apart;
+    static const double same = 1e-6; // of it
+    if (std::abs(next - apart) > same * std::abs(next)) {
+      apart = next;
+      step = std::polar(1.0, turn * apart);
+    }
+    direction *= step;
   }
-  double frequency = known.frequency, phase = 0.5 * known.duty + std::atan2(-sines, cosines) / (2 * M_PI);
+  double frequency = known.frequency, phase = 0.5 * known.duty + std::arg(std::conj(harmonic)) / (2 * M_PI);
   const double exposure = std::isfinite(known.exposure) ? known.exposure : profile.exposure;
   static const int steps = 3;
   for (int step = 0; step < steps; ++step) {
@@ -53,6 +61,10 @@ bool vpStripeCheck::compare(const vpStripeProfile &profile, const vpStripeFeatur
     }
     phase += std::clamp(m_solution(linear), -farthest, farthest);
     frequency += std::clamp(m_solution(linear + 1), -farthest / m_half, farthest / m_half);
+    static const double still = 0.002; // periods: the step after it would be a hundredth of that
+    if (std::abs(m_solution(linear)) + std::abs(m_solution(linear + 1)) * m_half < still) {
+      break;
+    }
   }
   const Matrix normal = m_normal;
   solve(frequency, phase, exposure * frequency, known.duty, linear);
@@ -81,25 +93,22 @@ void vpStripeCheck::solve(double frequency, double phase, double width, double d
   part(columns + 1) = part(value);
   part(columns + 2) = part(value) * times * perHalf;
   part(columns + 3) = part(columns + 2) * times * perHalf;
-  for (int count : {linear, unknowns}) {
-    if (count == all) {
+  m_normal.setIdentity();
+  Vector right = Vector::Zero();
+  for (int known = 0, count = linear; known < unknowns; known = count, count = unknowns) {
+    if (known > 0) {
       part(envelope) = m_solution(1) + times * perHalf * (m_solution(2) + times * perHalf * m_solution(3));
       part(columns + linear) = part(envelope) * part(byTurn);
       part(columns + linear + 1) = part(columns + linear) * times;
     }
-    m_normal.setIdentity();
-    m_solution.setZero();
-    for (int k = 0; k < count; ++k) {
+    for (int k = known; k < count; ++k) {
       part(weighted) = part(columns + k) * weights;
       vpColumnProducts(part(columns).data(), m_lines, k + 1, part(weighted).data(), &m_normal(0, k));
-      vpColumnProducts(part(light).data(), m_lines, 1, part(weighted).data(), &m_solution(k));
+      vpColumnProducts(part(light).data(), m_lines, 1, part(weighted).data(), &right(k));
+      m_normal(k, k) *= 1 + 1e-9;
     }
     m_normal.triangularView<Eigen::StrictlyLower>() = m_normal.transpose();
-    m_normal.diagonal().head(count) *= 1 + 1e-9;
-    m_solution = m_normal.ldlt().solve(m_solution).eval();
-    if (count == unknowns) {
-      break;
-    }
+    m_solution = m_normal.ldlt().solve(right);
   }
 }
 

@@ -18,9 +18,16 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double mostStrain = 8; // standard deviations
-const int young = 3;         // frames since the start: its velocity is not known, or rests on the claims
+const double mostStrain = 8;     // standard deviations
+const double manoeuvring = 0.05; // share of the random accelerations, which a long readout shows
+const int young = 3;             // frames since the start: its velocity is not known, or rests on the claims
 const char *const misplaced = "not where the robot's motion has it";
+
+//! Of a chi-square, in its standard deviations.
+double beyondMean(double chiSquare, double degrees)
+{
+  return (chiSquare - degrees) / std::sqrt(2 * std::max(1.0, degrees));
+}
 
 size_t accepted(const vpVlpLocation &location)
 {
@@ -197,7 +204,6 @@ double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<s
   vpVlpFilter &alone = m_scratch->alone;
   alone = filter;
   alone.restart(location.fix.wMb, location.timestamp);
-  static const double manoeuvring = 0.05; // share of its accelerations, which a long readout shows
   double chiSquare = 0, degrees = 0;
   for (int round = 0; round < 2; ++round) {
     chiSquare = degrees = 0;
@@ -216,7 +222,7 @@ double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<s
       alone.startAgain();
     }
   }
-  return (chiSquare - degrees) / std::sqrt(2 * std::max(1.0, degrees));
+  return beyondMean(chiSquare, degrees);
 }
 
 /*!
@@ -230,8 +236,11 @@ bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vecto
   const auto apart = std::count_if(usable.begin(), usable.end(), [&location](size_t i) {
     return location.observations[i].remark == misplaced;
   });
+  // What lamps do not contradict where a pose is expected they contradict less where none is.
+  const bool calm = !m_scratch->displaced && filter.unrest() <= manoeuvring &&
+                    beyondMean(location.fix.chiSquare, location.fix.degreesOfFreedom) < mostStrain;
   const bool now = usable.size() > 2 && (roused || 2 * static_cast<size_t>(apart) >= usable.size() ||
-                                         strain(location, usable) > mostStrain);
+                                         (!calm && strain(location, usable) > mostStrain));
   m_contradictions = now ? m_contradictions + 1 : std::max(0, m_contradictions - 1);
   return m_contradictions >= often;
 }
@@ -247,6 +256,7 @@ void vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> 
   fix.chiSquare = 0;
   fix.degreesOfFreedom = 0;
   fix.ambiguous = false;
+  m_scratch->displaced = false;
   filter.mark(location.timestamp);
   for (size_t i : inTime(location, usable)) {
     vpLampObservation &seen = location.observations[i];
@@ -258,6 +268,7 @@ void vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> 
     vpLampSight sight = vpLampSight::from(*lamp, seen, m_rig.camera);
     const Eigen::Vector2d offset = m_trust->offset(*lamp);
     sight.covariance += offset * offset.transpose();
+    m_scratch->displaced = m_scratch->displaced || !offset.isZero();
     const vpVlpFilter::Innovation innovation = filter.innovation(sight);
     if (!innovation.inFront || !m_trust->inPlace(*lamp, innovation)) {
       seen.remark = misplaced;

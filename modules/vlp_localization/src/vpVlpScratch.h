@@ -25,7 +25,8 @@ struct vpVlpLocalizer::Scratch {
   vpVlpFilter before; // correctRestless(): what each attempt begins with,
   vpLampTrust trusted;
   std::vector<vpLampObservation> seen;
-  vpVlpFilter alone;                         // strain()
+  bool displaced = false; // correct(): a lamp counted for less, as it is not where the map has it
+  vpVlpFilter alone;      // strain()
   std::vector<vpLampObservation> all, apart; // follow()
   std::vector<size_t> usable;                // process()
   std::vector<size_t> same;                  // unchanged()

@@ -102,11 +102,14 @@ public:
   */
   const std::vector<double> &linePositions() const { return m_linePosition; }
   const std::vector<double> &samplePositions() const { return m_samplePosition; }
+  //! Whether each sample lies where its number says.
+  bool samplesAligned() const { return m_aligned; }
 
 private:
   std::vector<double> m_middle;
   std::vector<double> m_linePosition;
   std::vector<double> m_samplePosition;
+  bool m_aligned = true;
   double m_exposure = 0;
   double m_lineTime = 0;
   double m_averaging = 0;

@@ -139,6 +139,8 @@ public:
   void rouse() { m_unrest = 1; }
   //! Its velocity is constant but for that share of the random accelerations.
   void calm(double share) { m_unrest = share; }
+  //! That share.
+  double unrest() const { return m_unrest; }
 
   //! Takes the rig's attitude and the map's places for less certain than they say, by claimedTilt and
   //! claimedPlace; from the next start() on, since what was estimated before rests on the claims.
