@@ -104,7 +104,7 @@ void vpEdgeFit<Model>::assemble(Equations &equations)
   const double noise = std::max(median(variances), 0.05); // 8 bits round: 1/12, less where all is dark
   const auto found = static_cast<double>(variances.size());
   // From a start far off, edges that are where they should not be are what passes for noise.
-  const float clear = m_some ? 0.f : static_cast<float>(4 * noise);
+  const float clear = m_some && m_litShine ? 0.f : static_cast<float>(4 * noise);
   for (EightLines &lines : ends) {
     for (vpLineEnds<N> &end : lines.sides) {
       end.shines = end.valid & (end.amplitude > 0) & (end.shiftShift > clear);
@@ -166,6 +166,7 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
   for (int i = 0; i < steps.most; ++i) {
     m_some = i < sparse;
     m_litOnly = steps.litOnly || m_some;
+    m_litShine = steps.litShine;
     m_reach = std::clamp(3 * m_blur + 2, 4.0, std::max(4.0, 0.4 * m_model.radius()));
     findEnds();
     assemble(equations);

@@ -96,9 +96,10 @@ public:
   //! How to get to the minimum. From a start that is good to a few pixels some of the lines will do first.
   struct Steps {
     int most;
-    int sparse = 0;       // so many of the first are by a few lines, of those that are lit
-    double still = 1e-3;  // px, of the last
-    bool litOnly = false; // by lit lines only, all of them
+    int sparse = 0;        // so many of the first are by a few lines, of those that are lit
+    double still = 1e-3;   // px, of the last
+    bool litOnly = false;  // by lit lines only, all of them
+    bool litShine = false; // the few lit lines show an edge for certain: it is a lamp that was seen before
   };
   //! \param blur px, to begin with; 0: one that suits the size.
   bool run(const cv::Rect &box, double shapeSigma, const Steps &steps, double blur = 0);
@@ -140,6 +141,7 @@ private:
     bool some = false;
   } m_listed;             // in m_memory
   bool m_litOnly = false; // dark lines are not looked at
+  bool m_litShine = false;
   Eigen::Matrix<double, N, N> m_covariance = Eigen::Matrix<double, N, N>::Zero();
   double m_residual = 0;
   double m_inflation = 1;

@@ -45,7 +45,7 @@ bool vpLampGlance::findOutline(const vpLinePicture &picture, const vpLineTiming 
                                const vpLampObservation &before, double shapeSigma)
 {
   // The step after one as short would be a fiftieth of it.
-  static const vpEdgeFit<vpEllipseModel>::Steps steps{6, 3, 0.02, true};
+  static const vpEdgeFit<vpEllipseModel>::Steps steps{6, 3, 0.02, true, true};
   static const double nearlyAll = 0.97, evenEdge = 0.45, rare = 6; // as vpOutlineFitter's
   static const double growth = 0.03;                               // share of an axis, from frame to frame
   static const double sharper = 0.7, softer = 1.4, tenth = 0.1;    // of the blur; px
