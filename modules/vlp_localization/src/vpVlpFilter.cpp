@@ -5,11 +5,14 @@
 #include <visp3/vlp_localization/vpVlpFilter.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "vpCovarianceColumns.h"
 #include "vpLampGeometry.h"
 
 BEGIN_VISP_NAMESPACE
@@ -169,10 +172,14 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp, const P
     innovation.covariance = predicted.ownDoubt + m_noise * lamp.covariance;
     const Derivative<2> &H = predicted.H;
     for (int k = 0; k < H.count; ++k) {
+      const auto column = m_P.col(H.at[static_cast<size_t>(k)]);
+      double byFirst = 0, bySecond = 0; // H P there
       for (int l = 0; l < H.count; ++l) {
-        innovation.covariance += m_P(H.at[static_cast<size_t>(k)], H.at[static_cast<size_t>(l)]) *
-                                 H.rows.row(k).transpose() * H.rows.row(l);
+        const double covariance = column(H.at[static_cast<size_t>(l)]);
+        byFirst += covariance * H.rows(l, 0);
+        bySecond += covariance * H.rows(l, 1);
       }
+      innovation.covariance += Eigen::Vector2d(byFirst, bySecond) * H.rows.row(k);
     }
     innovation.depth = predicted.depth;
   }
@@ -201,16 +208,11 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
                           const Eigen::Matrix<double, Values, Values> &R)
 {
   const Eigen::Index n = m_x.size();
-  m_PH.setZero(n, 3);
+  m_PH.resize(n, 3);
   m_K.resize(n, 3);
   auto PH = m_PH.leftCols<Values>(), K = m_K.leftCols<Values>();
-  for (int k = 0; k < H.count; ++k) {
-    for (int value = 0; value < Values; ++value) {
-      if (H.rows(k, value) != 0) {
-        PH.col(value) += H.rows(k, value) * m_P.col(H.at[static_cast<size_t>(k)]);
-      }
-    }
-  }
+  vpCovarianceColumns::sum(m_P.data(), n, H.at.data(), H.count, H.rows.data(),
+                           static_cast<int>(H.rows.rows()), Values, m_PH.data());
   Eigen::Matrix<double, Values, Values> S = R;
   for (int k = 0; k < H.count; ++k) {
     S += H.rows.row(k).transpose() * PH.row(H.at[static_cast<size_t>(k)]);
@@ -226,11 +228,22 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
   // Joseph's form, which holds for any gain, multiplied out: P - K W' - W K' with W = P H' - K S / 2.
   const Eigen::Matrix<double, Values, Values> half = 0.5 * S;
   PH -= K.lazyProduct(half);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    for (int value = 0; value < Values; ++value) {
-      m_P.col(k) -= PH(k, value) * K.col(value) + K(k, value) * PH.col(value);
-    }
+  // What is considered keeps its own covariance, so that the columns of the rest are all that changes.
+  static constexpr std::array<std::pair<Index, Index>, 2> estimated = {{{x, mount}, {mark0, lamps}}};
+  for (const auto &[from, until] : estimated) {
+    vpCovarianceColumns::subtract(m_P.data(), n, from, until, m_K.data(), m_PH.data(), Values);
   }
+  const auto mirror = [this](Eigen::Index from, Eigen::Index until) {
+    for (Eigen::Index k = from; k < until; ++k) {
+      for (const auto &[first, end] : estimated) {
+        for (Eigen::Index l = first; l < end; ++l) {
+          m_P(l, k) = m_P(k, l);
+        }
+      }
+    }
+  };
+  mirror(mount, mark0);
+  mirror(lamps, n);
   // A turn about the lamp, which its ray does not tell, is to stay untold once the place was corrected, else
   // corrections alone would tell the heading. So the covariance is that of the right-invariant error (Barrau
   // and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.
@@ -243,9 +256,13 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
       m_P.col(first + k) += turned(k) * m_P.col(first + yaw);
     }
   }
-  for (Eigen::Index k = 0; k < m_P.cols(); ++k) {
-    for (Eigen::Index l = 0; l < k; ++l) {
-      m_P(l, k) = m_P(k, l) = 0.5 * (m_P(l, k) + m_P(k, l));
+  for (const auto &[from, until] : estimated) { // but for rounding it is so
+    for (Eigen::Index k = from; k < until; ++k) {
+      for (const auto &[first, end] : estimated) {
+        for (Eigen::Index l = first; l < std::min<Eigen::Index>(end, k); ++l) {
+          m_P(l, k) = m_P(k, l) = 0.5 * (m_P(l, k) + m_P(k, l));
+        }
+      }
     }
   }
 }
