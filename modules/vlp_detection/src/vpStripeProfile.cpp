@@ -14,6 +14,7 @@
 #include <visp3/vlp_core/vpSimdClones.h>
 
 #include "vpBrighter.h"
+#include "vpEmitterFalloff.h"
 #include "vpLanes.h"
 #include "vpOutlineModel.h"
 
@@ -27,7 +28,8 @@ namespace
 using vpLanes::all;
 using vpLanes::Floats;
 
-const int white = 250; // grey value from which a pixel may have had more light than it shows
+using Falloff = vpEmitterFalloff;
+constexpr int white = Falloff::white;
 
 //! Stretches of the lines inside an outline.
 class Inside
@@ -73,140 +75,6 @@ private:
   std::optional<vpEllipseModel> m_ellipse;
 };
 
-//! Samples of one line, inside the lamp.
-struct Chord {
-  int line, first, last;
-};
-
-//! Squared distance from a lamp's middle along one line, 1 being its outline: scale (x - nearest)^2 + least.
-struct SquaredRadius {
-  float scale, nearest, least;
-};
-
-//! Of the light at some squared distance from the lamp's middle.
-struct LogFalloff {
-  float linear = 0, square = 0;
-};
-
-//! Sums over samples of a line of weight, weight x log, times powers of the squared radius.
-struct Moments {
-  std::array<float, 5> weights{};
-  std::array<float, 3> logs{};
-};
-
-VP_SIMD_CLONES void momentsOf(const float *weight, const float *log, size_t count, float first, float step,
-                              const SquaredRadius &radius, Moments &moments)
-{
-  std::array<Floats, 5> weights{};
-  std::array<Floats, 3> logs{};
-  static const Floats ramp = {0, 1, 2, 3, 4, 5, 6, 7};
-  for (size_t i = 0; i < count; i += vpLanes::count) {
-    const Floats from = first + step * (ramp + static_cast<float>(i)) - radius.nearest;
-    const Floats r2 = radius.scale * from * from + radius.least;
-    Floats w, l;
-    std::memcpy(&w, weight + i, sizeof(w));
-    std::memcpy(&l, log + i, sizeof(l));
-    l *= w;
-    for (size_t k = 0; k < weights.size(); ++k) {
-      weights[k] += w;
-      w *= r2;
-    }
-    for (size_t k = 0; k < logs.size(); ++k) {
-      logs[k] += l;
-      l *= r2;
-    }
-  }
-  for (size_t k = 0; k < weights.size(); ++k) {
-    moments.weights[k] = vpLanes::sum(weights[k]);
-  }
-  for (size_t k = 0; k < logs.size(); ++k) {
-    moments.logs[k] = vpLanes::sum(logs[k]);
-  }
-}
-
-/*!
-  How an emitter dims from its middle to its rim, as exp(a r^2 + b r^4), r being 0 at its middle and 1 at its
-  outline. All samples of a line are exposed together, so each lit line shows it whatever the stripes are:
-  least squares of the logarithms, each line with a brightness of its own.
-*/
-class Falloff
-{
-public:
-  Falloff() = default;
-  Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, const vpOutlineFit &fit);
-
-  const LogFalloff &log() const { return m_log; }
-  bool even() const { return m_log.linear == 0 && m_log.square == 0; }
-
-  SquaredRadius along(int line) const
-  {
-    const Eigen::Vector2d perSample = m_toDisc.col(0), start = m_toDisc * Eigen::Vector2d(0, line) - m_middle;
-    const double scale = perSample.squaredNorm(), nearest = -perSample.dot(start) / scale;
-    return {static_cast<float>(scale), static_cast<float>(nearest),
-            static_cast<float>((start + nearest * perSample).squaredNorm())};
-  }
-
-private:
-  LogFalloff m_log;
-  Eigen::Matrix2d m_toDisc = Eigen::Matrix2d::Identity(); // from the outline to the unit circle
-  Eigen::Vector2d m_middle = Eigen::Vector2d::Zero();     // as that has it
-};
-
-Falloff::Falloff(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords,
-                 const vpOutlineFit &fit)
-{
-  const vpLampOutline &outline = fit.outline;
-  const double c = std::cos(outline.angle), s = std::sin(outline.angle);
-  m_toDisc << c / outline.a, s / outline.a, -s / outline.b, c / outline.b;
-  m_middle = m_toDisc * outline.centre;
-  static const double roughness = 0.02; // share of the light by which an emitter is not smooth, sigma
-  static const double usual = 1;        // of a and b, standard deviation
-  static const int enough = 32;         // samples of a line
-  const double noise = std::max(fit.noise, 0.3), least = std::max(8 * noise, 6.0);
-  std::array<float, 256> weights{}, logs{}; // of each grey value
-  for (size_t grey = 0; grey < static_cast<size_t>(white); ++grey) {
-    const double light = static_cast<double>(grey) - fit.background;
-    if (light >= least) {
-      weights[grey] = static_cast<float>(1 / (noise * noise / (light * light) + roughness * roughness));
-      logs[grey] = static_cast<float>(std::log(light));
-    }
-  }
-  Eigen::Matrix2d H = Eigen::Matrix2d::Identity() / (usual * usual);
-  Eigen::Vector2d g = Eigen::Vector2d::Zero();
-  std::vector<float> weight, log;
-  Moments sum;
-  for (const Chord &chord : chords) {
-    const int step = std::max(1, (chord.last - chord.first) / enough);
-    const auto count = static_cast<size_t>((chord.last - chord.first) / step + 1);
-    weight.assign(count + vpLanes::count, 0);
-    log.assign(count + vpLanes::count, 0);
-    const unsigned char *row = lines[chord.line] + chord.first;
-    for (size_t i = 0; i < count; ++i) {
-      const unsigned char grey = row[i * static_cast<size_t>(step)];
-      weight[i] = weights[grey];
-      log[i] = logs[grey];
-    }
-    momentsOf(weight.data(), log.data(), count, static_cast<float>(chord.first), static_cast<float>(step),
-              along(chord.line), sum);
-    const double all = sum.weights[0];
-    if (all > 0) {
-      const Eigen::Vector2d mean(sum.weights[1] / all, sum.weights[2] / all);
-      Eigen::Matrix2d squares;
-      squares << sum.weights[2], sum.weights[3], sum.weights[3], sum.weights[4];
-      H += squares - all * mean * mean.transpose();
-      g += Eigen::Vector2d(sum.logs[1], sum.logs[2]) - sum.logs[0] * mean;
-    }
-  }
-  const Eigen::Vector2d solution = H.inverse() * g;
-  static const double most = 4; // of the logarithm at the rim: what goes farther is no lamp's falloff
-  // The envelope of the stripes makes up for so little.
-  static const double little = 0.003;
-  if (solution.allFinite() && std::abs(solution.sum()) < most && solution.norm() < 3 * most &&
-      solution.cwiseAbs().sum() >= little) {
-    m_log = {static_cast<float>(solution.x()), static_cast<float>(solution.y())};
-  }
-}
-
 //! Sums over some samples of a line, for least squares of its brightness at the lamp's middle.
 struct Brightness {
   float light = 0, squares = 0;
@@ -225,7 +93,7 @@ struct BothSums {
 };
 
 VP_SIMD_CLONES void sumsOf(const unsigned char *row, int first, int count, float background,
-                           const SquaredRadius &radius, const LogFalloff &falloff, BothSums &sums)
+                           const Falloff::SquaredRadius &radius, const Falloff::Log &falloff, BothSums &sums)
 {
   static const Floats ramp = {0, 1, 2, 3, 4, 5, 6, 7};
   static constexpr float far = 12; // the exponential is that of what is below 0
@@ -272,10 +140,11 @@ BothSums sumsOfEven(const unsigned char *row, int first, int count, float backgr
 class LineSamples
 {
 public:
-  LineSamples(const unsigned char *row, const Chord &chord, const Falloff &falloff, double background)
+  LineSamples(const unsigned char *row, const Falloff::Chord &chord, const Falloff &falloff,
+              double background)
   {
     const int count = chord.last - chord.first + 1, half = count / 2;
-    const SquaredRadius radius = falloff.along(chord.line);
+    const Falloff::SquaredRadius radius = falloff.along(chord.line);
     auto sums = [&](int first, int samples) {
       if (falloff.even()) {
         return sumsOfEven(row, first, samples, static_cast<float>(background));
@@ -349,9 +218,9 @@ private:
 };
 
 //! Whether most of some line is white.
-bool hasWhiteLines(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
+bool hasWhiteLines(const cv::Mat_<unsigned char> &lines, const std::vector<Falloff::Chord> &chords)
 {
-  return std::any_of(chords.begin(), chords.end(), [&lines](const Chord &chord) {
+  return std::any_of(chords.begin(), chords.end(), [&lines](const Falloff::Chord &chord) {
     const int samples = chord.last - chord.first + 1;
     return 2 * vpBrighter::count(lines[chord.line] + chord.first, samples, white - 1) > samples - 1;
   });
@@ -372,7 +241,7 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
       ellipse ? std::min(lines.rows - 1.0, box(3)) : std::min<double>(roi.box.br().y - 1, box(3));
   const Inside inside(outline);
   auto chordsOf = [&](double share) {
-    std::vector<Chord> chords;
+    std::vector<Falloff::Chord> chords;
     for (int line = static_cast<int>(std::ceil(top + margin)); line <= bottom - margin; ++line) {
       double first, last;
       if (!inside.stretch(line, share, first, last)) {
@@ -387,7 +256,7 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
     return chords;
   };
   static const double nearlyAll = 0.8, middle = 0.35; // of a chord
-  std::vector<Chord> chords = chordsOf(soft ? middle : nearlyAll);
+  std::vector<Falloff::Chord> chords = chordsOf(soft ? middle : nearlyAll);
   if (ellipse && !soft && hasWhiteLines(lines, chords)) {
     chords = chordsOf(std::max(nearlyAll, 1 - (margin + 1) / outline.b)); // the rim may be dimmer than white
   }
@@ -395,7 +264,7 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   Agreement agreement;
-  for (const Chord &chord : chords) {
+  for (const Falloff::Chord &chord : chords) {
     const LineSamples line(lines[chord.line], chord, falloff, fit.background);
     const Brightness brightness = line.whole();
     profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
