@@ -92,6 +92,31 @@ TEST_F(Glance, SeesWhatTheDetectorSees)
   }
 }
 
+//! A robot that turns or brakes: lamps are not where they were expected. Whatever lines are lit.
+TEST_F(Glance, FindsItsWayFromPixelsAway)
+{
+  for (const double frequency : {1042., 2000., 5200.}) {
+    for (unsigned int seed = 1; seed < 12; ++seed) {
+      vpPaintedLamp moved = lamp();
+      moved.frequency = frequency;
+      moved.phase = 0.09 * seed;
+      moved.pwm(seed % 2 == 0 ? 0.5 : 0.25);
+      const vpImage<unsigned char> I = picture({moved}, seed).render();
+      ASSERT_TRUE(detector.detect(I));
+      before = detector.observations().front();
+      ASSERT_TRUE(finds(I, moved.centre)) << frequency << ", " << seed;
+      const Eigen::Vector2d near = now.outline.centre;
+      for (const double away : {1., 2., 3., 4.}) { // px
+        const double angle = 2.4 * seed + away;
+        ASSERT_TRUE(finds(I, moved.centre + away * Eigen::Vector2d(std::cos(angle), std::sin(angle))))
+            << frequency << ", " << seed << ", " << away;
+        // A step of 0.02 px is its last one.
+        EXPECT_LT((now.outline.centre - near).norm(), 0.006) << frequency << ", " << seed << ", " << away;
+      }
+    }
+  }
+}
+
 TEST_F(Glance, ErrorsAreAsLargeAsTheySay)
 {
   double squares = 0;
