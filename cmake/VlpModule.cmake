@@ -65,7 +65,12 @@ macro(vp_create_module)
   target_include_directories(${the_module}
     PUBLIC "$<BUILD_INTERFACE:${CMAKE_CURRENT_LIST_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>"
     PRIVATE "${CMAKE_CURRENT_LIST_DIR}/src")
-  target_include_directories(${the_module} SYSTEM PUBLIC ${vlp_include_directories})
+  set(vlp_installed_directories ${vlp_include_directories})
+  if(CMAKE_SYSROOT) # where the machine that it is built for has them
+    string(REPLACE "${CMAKE_SYSROOT}/" "/" vlp_installed_directories "${vlp_include_directories}")
+  endif()
+  target_include_directories(${the_module} SYSTEM
+    PUBLIC "$<BUILD_INTERFACE:${vlp_include_directories}>" "$<INSTALL_INTERFACE:${vlp_installed_directories}>")
   target_link_libraries(${the_module} LINK_PUBLIC ${vlp_depends} ${ARGN})
   # Reading these headers is half of the time that a file takes. All modules share what the lowest one compiled.
   if(the_module STREQUAL "visp_vlp_core")
