@@ -79,6 +79,24 @@ inline int count(const unsigned char *row, int samples, unsigned char grey)
 }
 
 //! Of so many samples.
+inline unsigned char brightest(const unsigned char *row, int samples)
+{
+  unsigned char peak = 0;
+  int i = 0;
+  if (samples >= block) {
+    cv::v_uint8x16 values = most(row);
+    for (i = block; i + block <= samples; i += block) {
+      values = cv::v_max(values, most(row + i));
+    }
+    peak = cv::v_reduce_max(values);
+  }
+  for (; i < samples; ++i) {
+    peak = std::max(peak, row[i]);
+  }
+  return peak;
+}
+
+//! Of so many samples.
 inline int sum(const unsigned char *row, int samples)
 {
   int sum = 0, i = 0;

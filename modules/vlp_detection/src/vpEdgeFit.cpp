@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "vpBrighter.h"
 #include "vpEllipseEdges.h"
 #include "vpQuadrilateralEdges.h"
 
@@ -28,16 +29,6 @@ double median(std::vector<float> &values)
   const auto middle = values.begin() + static_cast<long>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-//! Of so many grey values.
-unsigned char brightest(const unsigned char *grey, int count)
-{
-  unsigned char most = 0;
-  for (int i = 0; i < count; ++i) {
-    most = std::max(most, grey[i]);
-  }
-  return most;
 }
 
 } // namespace
@@ -246,7 +237,8 @@ double vpEdgeFit<Model>::evenness() const
       }
       const int left = std::max(0, static_cast<int>(first)),
                 right = std::min(m_lines->cols - 1, static_cast<int>(last) + 1);
-      const double peak = left < right ? brightest((*m_lines)[line] + left, right - left + 1) : 0.0;
+      const double peak =
+          left < right ? vpBrighter::brightest((*m_lines)[line] + left, right - left + 1) : 0.0;
       for (const vpLineEnds<N> &end : lines.sides) {
         if (end.valid[lane] != 0) {
           edges += std::max(0.f, end.amplitude[lane]);

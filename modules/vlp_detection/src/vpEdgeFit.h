@@ -139,9 +139,9 @@ private:
   struct Listed {
     int from = 0, to = -1;
     bool some = false;
-  } m_listed;             // in m_memory
-  bool m_litOnly = false; // dark lines are not looked at
-  bool m_litShine = false;
+  } m_listed;              // in m_memory
+  bool m_litOnly = false;  // dark lines are not looked at
+  bool m_litShine = false; // as of Steps
   Eigen::Matrix<double, N, N> m_covariance = Eigen::Matrix<double, N, N>::Zero();
   double m_residual = 0;
   double m_inflation = 1;

@@ -19,30 +19,10 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! Of some samples of a line.
-unsigned char brightest(const unsigned char *row, int first, int last)
-{
-  static constexpr int width = cv::v_uint8x16::nlanes, block = 4 * width;
-  unsigned char most = 0;
-  int x = first;
-  if (last - first >= block) {
-    cv::v_uint8x16 a = cv::v_setzero_u8(), b = a;
-    for (; x + block <= last; x += block) {
-      a = cv::v_max(a, cv::v_max(cv::v_load(row + x), cv::v_load(row + x + width)));
-      b = cv::v_max(b, cv::v_max(cv::v_load(row + x + 2 * width), cv::v_load(row + x + 3 * width)));
-    }
-    most = cv::v_reduce_max(cv::v_max(a, b));
-  }
-  for (; x < last; ++x) {
-    most = std::max(most, row[x]);
-  }
-  return most;
-}
-
 //! Whether three samples in a row are brighter, of those from \e first to before \e last.
 bool brightRun(const unsigned char *row, int first, int last, unsigned char grey)
 {
-  if (brightest(row, first, last) <= grey) {
+  if (last <= first || vpBrighter::brightest(row + first, last - first) <= grey) {
     return false; // nearly always
   }
   std::uint64_t before = 0; // the last two samples of the block before, as its two lowest bits
