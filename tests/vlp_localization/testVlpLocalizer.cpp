@@ -121,6 +121,66 @@ TEST(VlpLocalizer, TwoLampsOfWrongSizeGiveNoPosition)
       0.8; // so the height would come out double, and the lamps too small for it
   const vpVlpLocation location = room.locate();
   EXPECT_FALSE(location.fix.valid) << room.error(location.fix);
+  EXPECT_NE(location.fix.refusal.find("by its size in the map"), std::string::npos) << location.fix.refusal;
+}
+
+TEST(VlpLocalizer, LampOfWrongSizeAmongOthersIsLeftOut)
+{
+  for (const size_t seen : {3u, 4u}) {
+    Room room;
+    room.lamps.resize(seen);
+    room.map.lamps[1].size *= 2; // or what is taken for B is something else
+    const vpVlpLocation location = room.locate();
+    ASSERT_TRUE(location.fix.valid) << location.fix.refusal;
+    EXPECT_EQ(location.fix.lamps.size(), seen - 1);
+    EXPECT_LT(room.error(location.fix), 0.001);
+    ASSERT_NE(find(location, "B"), nullptr);
+    EXPECT_FALSE(find(location, "B")->accepted);
+  }
+}
+
+TEST(VlpLocalizer, HalfOfTheLampsOfWrongSizeGiveNoPosition)
+{
+  Room room;
+  room.map.lamps[1].size *= 2;
+  room.map.lamps[2].size *= 2;
+  EXPECT_FALSE(room.locate().fix.valid);
+}
+
+TEST(VlpLocalizer, LampsOfAWideLensAreAsSmallAsItShowsThem)
+{
+  Room room;
+  room.x = room.y = room.yaw = 0;
+  room.camera = {1280, 960, 600};
+  room.lamps = {{"A", {-1.6, 0, 1.6}, 1800},
+                {"B", {0, -1, 1.6}, 2300},
+                {"C", {1.6, 0, 1.6}, 2900},
+                {"D", {0, 1, 1.6}, 3600}};
+  room.map = hungLamps::mapOf(room.lamps);
+  vpVlpRig rig = room.rig();
+  rig.camera.initProjWithKannalaBrandtDistortion(600, 600, room.camera.u0(), room.camera.v0(),
+                                                 {0, 0, 0, 0}); // by the angle
+  vpLampPicture picture;
+  picture.width = room.camera.width;
+  picture.height = room.camera.height;
+  picture.rowTime = picture.exposure = rig.shutter.rowTime;
+  for (const hungLamps::Hung &hung : room.lamps) {
+    const Eigen::Vector2d way = hung.position.head<2>() / hung.position.z();
+    const double tangent = way.norm(), half = 0.08 / hung.position.z();
+    const double near = 600 * std::atan(tangent - half), far = 600 * std::atan(tangent + half);
+    const double outwards = 0.5 * (far - near), around = 600 * std::atan(tangent) / tangent * half;
+    vpPaintedLamp lamp;
+    lamp.centre = Eigen::Vector2d(room.camera.u0(), room.camera.v0()) + 0.5 * (near + far) * way.normalized();
+    lamp.a = way.y() == 0 ? outwards : around;
+    lamp.b = way.y() == 0 ? around : outwards;
+    lamp.frequency = hung.frequency;
+    lamp.pwm(0.5);
+    picture.lamps.push_back(lamp);
+  }
+  const vpVlpLocation location = vpVlpLocalizer(rig, room.map).process({picture.render(), 0, ""});
+  ASSERT_TRUE(location.fix.valid) << location.fix.refusal;
+  EXPECT_EQ(location.fix.lamps.size(), 4u);
+  EXPECT_LT(room.error(location.fix), 0.001);
 }
 
 TEST(VlpLocalizer, ReflectionIsToldFromItsLampByItsPlace)

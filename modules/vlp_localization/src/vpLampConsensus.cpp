@@ -9,6 +9,8 @@
 #include <utility>
 
 #include <Eigen/LU>
+#include <visp3/core/vpMeterPixelConversion.h>
+#include <visp3/vlp_core/vpNumberText.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -42,10 +44,41 @@ std::string joined(const std::vector<std::string> &ids)
   return text;
 }
 
+Eigen::Vector3d inCamera(const Eigen::Vector3d &p, const vpHomogeneousMatrix &cMw)
+{
+  Eigen::Vector3d c;
+  for (unsigned int i = 0; i < 3; ++i) {
+    c(i) = cMw[i][0] * p.x() + cMw[i][1] * p.y() + cMw[i][2] * p.z() + cMw[i][3];
+  }
+  return c;
+}
+
 //! Along the camera's axis, m.
 double depthOf(const Eigen::Vector3d &p, const vpHomogeneousMatrix &cMw)
 {
-  return cMw[2][0] * p.x() + cMw[2][1] * p.y() + cMw[2][2] * p.z() + cMw[2][3];
+  return inCamera(p, cMw).z();
+}
+
+/*!
+  Mean diameter, px, that the picture of a lamp has from there: of the ellipse that the lens, near its middle,
+  makes of a circle of its size, half the sum of the singular values of that map. NaN behind the camera.
+*/
+double diameterOf(const vpLamp &lamp, const vpHomogeneousMatrix &cMw, const vpCameraParameters &camera)
+{
+  Eigen::Matrix2d across; // px, of the lamp along x and y of the map
+  for (int axis = 0; axis < 2; ++axis) {
+    Eigen::Vector2d ends[2];
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Vector3d c =
+          inCamera(lamp.position + (k - 0.5) * lamp.size * Eigen::Vector3d::Unit(axis), cMw);
+      if (!(c.z() > 0)) {
+        return NAN;
+      }
+      vpMeterPixelConversion::convertPoint(camera, c.x() / c.z(), c.y() / c.z(), ends[k].x(), ends[k].y());
+    }
+    across.col(axis) = ends[1] - ends[0];
+  }
+  return 0.5 * std::sqrt(across.squaredNorm() + 2 * std::abs(across.determinant()));
 }
 
 vpVlpFix refusal(const std::string &reason)
@@ -111,19 +144,23 @@ double vpLampConsensus::misfit(const vpVlpFix &fix, const std::vector<vpLampSigh
   return sum;
 }
 
-bool vpLampConsensus::agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps,
-                            const std::vector<size_t> &usable) const
+bool vpLampConsensus::agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const
 {
-  return fix.valid && chiSquareTail(misfit(fix, lamps), fix.degreesOfFreedom) > m_likelihood &&
-         sizesFit(fix, usable);
+  return fix.valid && chiSquareTail(misfit(fix, lamps), fix.degreesOfFreedom) > m_likelihood;
 }
 
-//! Whether lamps whose size the map states look about that large from where the fix puts the camera.
-bool vpLampConsensus::sizesFit(const vpVlpFix &fix, const std::vector<size_t> &usable) const
+/*!
+  Lamps of a fix that look larger or smaller from there than the map's size makes them. \param remark Says so
+  of the first one.
+*/
+std::vector<std::string> vpLampConsensus::wrongSizes(const vpVlpFix &fix, const std::vector<size_t> &usable,
+                                                     std::string &remark) const
 {
-  static const double tolerance =
-      0.3; // of the size: the map may mean the housing, the picture shows the light
+  // The map may mean the housing, and the picture shows the light.
+  static const double tolerance = 0.3; // of the size
+  static const double coarse = 3;      // px
   const vpHomogeneousMatrix cMw = fix.wMc.inverse();
+  std::vector<std::string> wrong;
   for (size_t i : usable) {
     const vpLampObservation &seen = m_observations[i];
     const vpLamp *lamp = m_lamps[i];
@@ -131,13 +168,42 @@ bool vpLampConsensus::sizesFit(const vpVlpFix &fix, const std::vector<size_t> &u
         std::find(fix.lamps.begin(), fix.lamps.end(), seen.id) == fix.lamps.end()) {
       continue;
     }
-    const double expected = m_rig.camera.get_px() * lamp->size / depthOf(lamp->position, cMw);
-    static const double coarse = 3; // px
-    if (std::abs(seen.outline.diameter() - expected) > tolerance * expected + coarse) {
-      return false;
+    const double expected = diameterOf(*lamp, cMw, m_rig.camera), found = seen.outline.diameter();
+    if (!(std::abs(found - expected) <= tolerance * expected + coarse)) {
+      if (wrong.empty()) {
+        remark = "lamp " + seen.id + " looks " + vpNumberText(std::round(found)) + " px large, expected " +
+                 vpNumberText(std::round(expected)) + " px by its size in the map";
+      }
+      wrong.push_back(seen.id);
     }
   }
-  return true;
+  return wrong;
+}
+
+/*!
+  A fix without lamps of wrong size: what was taken for such a lamp may be something else, or its outline be
+  spoilt. Where these are half of all lamps or more, the place may be what is wrong.
+*/
+vpVlpFix vpLampConsensus::withoutWrongSizes(const vpVlpFix &all, const std::vector<size_t> &usable,
+                                            std::vector<vpLampSight> &lamps, const Solve &solver) const
+{
+  const size_t most = (lamps.size() - 1) / 2;
+  size_t dropped = 0;
+  vpVlpFix fix = all;
+  std::string remark;
+  for (std::vector<std::string> wrong; fix.valid && !(wrong = wrongSizes(fix, usable, remark)).empty();) {
+    dropped += wrong.size();
+    if (dropped > most) {
+      return refusal(remark);
+    }
+    lamps.erase(std::remove_if(lamps.begin(), lamps.end(),
+                               [&](const vpLampSight &lamp) {
+                                 return std::find(wrong.begin(), wrong.end(), lamp.id) != wrong.end();
+                               }),
+                lamps.end());
+    fix = solver(lamps);
+  }
+  return fix;
 }
 
 vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &solver) const
@@ -151,15 +217,14 @@ vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &
   vpVlpFix fix = solver(lamps);
   // One of three could be any of them, and some few of many always agree by chance.
   const size_t fewestLeft = usable.size() - usable.size() / 4;
-  while (fix.valid && !agree(fix, lamps, usable)) {
+  while (fix.valid && !agree(fix, lamps)) {
     if (lamps.size() <= fewestLeft) {
       return refusal("lamps " + joined(fix.lamps) + " do not agree on one place");
     }
-    const vpVlpFix better = withoutWorst(lamps, solver);
-    if (!better.valid) {
-      return better;
-    }
-    fix = better;
+    fix = withoutWorst(lamps, solver);
+  }
+  if (fix.valid) {
+    fix = withoutWrongSizes(fix, usable, lamps, solver);
   }
   if (fix.valid && fix.degreesOfFreedom > 0) {
     fix.covariance *= std::max(1.0, fix.chiSquare / fix.degreesOfFreedom);

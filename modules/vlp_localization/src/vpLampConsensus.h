@@ -37,8 +37,9 @@ public:
   /*!
     The pose of all usable lamps where their residuals are likely under all stated doubts and `mapTolerance`.
     Otherwise that of those that do agree, up to a quarter of the lamps left out one by one; otherwise a
-    refusal. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up to what they
-    show (Birge's ratio).
+    refusal. Lamps that look much larger or smaller than the map says are left out too, as long as more do
+    not. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up to what they show
+    (Birge's ratio).
   */
   vpVlpFix solve(const std::vector<size_t> &usable, const Solve &solver) const;
 
@@ -49,10 +50,12 @@ public:
 private:
   std::vector<vpLampSight> sights(const std::vector<size_t> &which) const;
   double misfit(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
-  bool agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps,
-             const std::vector<size_t> &usable) const;
+  bool agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
   vpVlpFix withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const;
-  bool sizesFit(const vpVlpFix &fix, const std::vector<size_t> &usable) const;
+  std::vector<std::string> wrongSizes(const vpVlpFix &fix, const std::vector<size_t> &usable,
+                                      std::string &remark) const;
+  vpVlpFix withoutWrongSizes(const vpVlpFix &fix, const std::vector<size_t> &usable,
+                             std::vector<vpLampSight> &lamps, const Solve &solver) const;
 
   const std::vector<const vpLamp *> m_lamps; // of each observation
   const vpVlpRig &m_rig;
