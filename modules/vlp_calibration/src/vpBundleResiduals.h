@@ -228,15 +228,17 @@ struct vpPriorResidual {
   }
 };
 
-//! What one difference of the wheels' radii does to a turn and to a straight line, as of vpOdometryError.
+//! What one difference of the wheels' radii does to a turn and to a straight line, as of vpOdometryError,
+//! where the wheels are as far apart as speed and turn show.
 struct vpWheelsResidual {
-  double separation; // m
+  double separation; // m, as the odometry takes it
 
   template <typename T>
   bool operator()(const T *odometry, T *residual) const
   {
-    static const double exact = 1e-6; // m/rad
-    residual[0] = (odometry[1] - T(0.25 * separation * separation) * odometry[3]) / T(exact);
+    static const double exact = 1e-6;                                // m/rad
+    const T apart = (T(1.0) + odometry[0]) / (T(1.0) + odometry[2]); // times the separation
+    residual[0] = (odometry[1] - T(0.25 * separation * separation) * apart * odometry[3]) / T(exact);
     return true;
   }
 };

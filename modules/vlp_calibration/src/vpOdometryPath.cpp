@@ -6,22 +6,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! Chord of an arc of that length and turn, in the frame of its start.
-Eigen::Vector2d chordOf(double length, double turn)
+//! The pose after an arc of that length and turn.
+vpPlanarPose arc(const vpPlanarPose &pose, double length, double turn)
 {
   const double half = 0.5 * turn;
   const double chord = std::abs(half) < 1e-9 ? length : length * std::sin(half) / half;
-  return {chord * std::cos(half), chord * std::sin(half)};
+  return {pose(0) + chord * std::cos(pose(2) + half), pose(1) + chord * std::sin(pose(2) + half),
+          pose(2) + turn};
 }
 
+//! Values at some times, and how fast they change there.
+struct Curve {
+  std::vector<double> values, slopes;
+};
+
 //! What a parabola through the values about each time says of it, and how far off it these are, rms.
-struct Smoothed {
-  std::vector<double> values, residuals;
+struct Smoothed : Curve {
+  std::vector<double> residuals;
 };
 
 //! \param reach s, to either side.
@@ -48,10 +57,25 @@ Smoothed parabolas(const std::vector<double> &times, const std::vector<double> &
     normal.computeInverseWithCheck(inverse, known, 1e-6);
     const Eigen::Vector3d parabola = known ? Eigen::Vector3d(inverse * right) : Eigen::Vector3d::Zero();
     smooth.values.push_back(values[i] + parabola(0));
+    smooth.slopes.push_back(parabola(1) / reach);
     smooth.residuals.push_back(
-        std::sqrt(std::max(0.0, squares - parabola.dot(right)) / static_cast<double>(end - first)));
+        known ? std::sqrt(std::max(0.0, squares - parabola.dot(right)) / static_cast<double>(end - first))
+              : std::numeric_limits<double>::infinity());
   }
   return smooth;
+}
+
+//! The values as they are, and their mean slope from before to after each.
+Curve plain(const std::vector<double> &times, const std::vector<double> &values)
+{
+  Curve curve;
+  curve.values = values;
+  for (size_t i = 0; i < times.size(); ++i) {
+    const size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, times.size() - 1);
+    const double dt = times[after] - times[before];
+    curve.slopes.push_back(dt > 0 ? (values[after] - values[before]) / dt : 0);
+  }
+  return curve;
 }
 
 /*!
@@ -59,22 +83,32 @@ Smoothed parabolas(const std::vector<double> &times, const std::vector<double> &
   parabolas over as long as the base moves along one (Savitzky and Golay 1964; how long, by what is usual of
   the residuals).
 */
-std::vector<double> smoothed(const std::vector<double> &times, const std::vector<double> &values)
+Curve smoothed(const std::vector<double> &times, const std::vector<double> &values)
 {
-  std::vector<double> smooth = values;
-  static const double usual = 1.3;                                    // times the median
+  Curve smooth = plain(times, values);
+  static const double usual = 1.4;                                    // times the median
   static const double reaches[] = {0.04, 0.06, 0.09, 0.13, 0.2, 0.3}; // s, to either side
   for (const double reach : reaches) {
     const Smoothed wider = parabolas(times, values, reach);
     std::vector<double> sorted = wider.residuals;
     std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
     for (size_t i = 0; i < times.size(); ++i) {
-      if (wider.residuals[i] <= usual * sorted[sorted.size() / 2]) {
-        smooth[i] = wider.values[i];
+      if (std::isfinite(wider.residuals[i]) && wider.residuals[i] <= usual * sorted[sorted.size() / 2]) {
+        smooth.values[i] = wider.values[i];
+        smooth.slopes[i] = wider.slopes[i];
       }
     }
   }
   return smooth;
+}
+
+//! How far a value has gone a \e share into an interval (s), by the cubic of its values and slopes (Hermite):
+//! speed changes within the time between two readings. \param change Over the whole of it.
+double hermite(double share, double interval, double change, double slopeBefore, double slopeAfter)
+{
+  const double rest = 1 - share;
+  return share * share * (3 - 2 * share) * change +
+         interval * share * rest * (rest * slopeBefore - share * slopeAfter);
 }
 } // namespace
 
@@ -98,17 +132,16 @@ vpOdometryPath::vpOdometryPath(const std::vector<vpOdometry> &samples)
     }
     times.push_back(sample.timestamp);
   }
-  along = smoothed(times, along);
-  heading = smoothed(times, heading);
-  m_points.push_back({times[0], {0, 0, heading[0]}, along[0], 0, 0, 0, 0});
+  const Curve way = smoothed(times, along), course = smoothed(times, heading);
+  const auto point = [&](size_t i, const vpPlanarPose &pose, double length, double turned) {
+    m_points.push_back({times[i], pose, way.values[i], length, turned, way.slopes[i], course.slopes[i]});
+  };
+  point(0, {0, 0, course.values[0]}, 0, 0);
   for (size_t i = 1; i < times.size(); ++i) {
     const Point &before = m_points.back();
-    const double dt = times[i] - before.time, length = along[i] - before.along,
-                 turn = heading[i] - before.pose(2);
-    const Eigen::Vector2d chord = chordOf(length, turn);
-    m_points.push_back({times[i], vpAfter(before.pose, {dt, chord.x(), chord.y(), turn, 0, 0, 0}), along[i],
-                        before.length + std::abs(length), before.turned + std::abs(turn),
-                        dt > 0 ? length / dt : 0.0, dt > 0 ? turn / dt : 0.0});
+    const double length = way.values[i] - before.along, turn = course.values[i] - before.pose(2);
+    point(i, arc(before.pose, length, turn), before.length + std::abs(length),
+          before.turned + std::abs(turn));
   }
 }
 
@@ -117,14 +150,18 @@ vpOdometryPath::Point vpOdometryPath::at(double time) const
   const auto next = std::upper_bound(m_points.begin(), m_points.end(), time,
                                      [](double value, const Point &point) { return value < point.time; });
   const Point &before = next == m_points.begin() ? *next : *(next - 1);
-  const Point &rates = next == m_points.end() ? before : *next; // beyond the end: on as before
-  Point point = before;
   const double dt = time - before.time;
-  const Eigen::Vector2d chord = chordOf(rates.v * dt, rates.w * dt);
-  point.pose = vpAfter(before.pose, {dt, chord.x(), chord.y(), rates.w * dt, 0, 0, 0});
-  point.along += rates.v * dt;
-  point.length += std::abs(rates.v * dt);
-  point.turned += std::abs(rates.w * dt);
+  double length = before.v * dt, turn = before.w * dt; // beyond the ends: on as there
+  if (next != m_points.begin() && next != m_points.end()) {
+    const double interval = next->time - before.time, share = dt / interval;
+    length = hermite(share, interval, next->along - before.along, before.v, next->v);
+    turn = hermite(share, interval, next->pose(2) - before.pose(2), before.w, next->w);
+  }
+  Point point = before;
+  point.pose = arc(before.pose, length, turn);
+  point.along += length;
+  point.length += std::abs(length);
+  point.turned += std::abs(turn);
   point.time = time;
   return point;
 }

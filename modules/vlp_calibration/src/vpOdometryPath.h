@@ -30,8 +30,8 @@ using vpPlanarPose = Eigen::Vector3d;
 //! The pose that \e step leads to.
 vpPlanarPose vpAfter(const vpPlanarPose &pose, const vpPlanarStep &step);
 
-//! Where a base went by its odometry alone: arcs of constant v and w between the samples, these without the
-//! steps of encoders.
+//! Where a base went by its odometry alone: along it and about it by cubics between the samples, these
+//! without the steps of encoders.
 class vpOdometryPath
 {
 public:

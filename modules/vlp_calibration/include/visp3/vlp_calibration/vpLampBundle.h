@@ -33,8 +33,8 @@ struct VISP_EXPORT vpBundleResidual {
 
 /*!
   How a base moves where its odometry says v and w: at v (1 + speed) + driftPerTurn w, turning at
-  w (1 + turn) + turnPerMetre v + turnBias. Wheels whose radii differ by the share e, at a distance s, have
-  turnPerMetre = e / s and driftPerTurn = e s / 4.
+  w (1 + turn) + turnPerMetre v + turnBias. Wheels whose radii differ by the share e, at a distance d where
+  the odometry takes s, have turnPerMetre = e / d, driftPerTurn = e s / 4 and 1 + turn = (1 + speed) s / d.
 */
 struct VISP_EXPORT vpOdometryError {
   double speed = 0;        // share
