@@ -106,6 +106,22 @@ TEST(ShutterCalibration, SaysWhereThereAreNoStripes)
   EXPECT_NE(found.refusal.find("no stripes"), std::string::npos) << found.refusal;
 }
 
+// Two lamps on, and one frequency said of both.
+TEST(ShutterCalibration, LampsOfOtherFrequenciesAreNoWitnesses)
+{
+  vpSimulation world = simulation(2);
+  vpLampMap one = world.map();
+  one.lamps.resize(1);
+  vpShutterCalibration calibration(world.rig(), one);
+  vpVlpFrame frame;
+  for (int i = 0; i < 2 && world.next(frame); ++i) {
+    calibration.add(frame);
+  }
+  const vpShutterEstimate found = calibration.solve();
+  EXPECT_FALSE(found.valid);
+  EXPECT_NE(found.refusal.find("--lamps"), std::string::npos) << found.refusal;
+}
+
 TEST(ShutterCalibration, NeedsALampOfKnownFrequency)
 {
   vpLamp lamp;

@@ -202,6 +202,7 @@ TEST(VlpRig, BadFilesAreRefusedWithFileLineAndField)
       {with(minimal, "row_time_s: 43.1e-6, ", ""),
        {":2: shutter.row_time_s: missing, expected a number above 0"}},
       {with(minimal, "43.1e-6", "0"), {":2: shutter.row_time_s: 0, expected a number above 0"}},
+      {with(minimal, "43.1e-6", "43.1"), {":2: shutter.row_time_s: 43.1, expected seconds, up to 0.01"}},
       {with(minimal, "43.1e-6", "43.1 us"), {":2: shutter.row_time_s: 43.1 us, expected a number above 0"}},
       {with(minimal, "exposure_s: 50e-6, ", ""), {":2: shutter.exposure_s: missing"}},
       {with(minimal, "50e-6", "-50e-6"), {":2: shutter.exposure_s: -50e-6, expected a number above 0"}},

@@ -142,7 +142,20 @@ double vpShutterCalibration::likeliestRowTime(const std::vector<Stripes> &stripe
     for (const Stripes &seen : stripes) {
       rowTimes.push_back(seen.cycles / m_map.lamps[0].modulation.frequency);
     }
-    return median(rowTimes);
+    const double middle = median(rowTimes);
+    const auto agree = std::count_if(stripes.begin(), stripes.end(), [&](const Stripes &seen) {
+      static const double same = 0.01, sigmas = 5;
+      const double cycles = middle * m_map.lamps[0].modulation.frequency;
+      return std::abs(seen.cycles - cycles) < same * cycles + sigmas * seen.cyclesSigma;
+    });
+    if (2 * static_cast<size_t>(agree) <= stripes.size()) {
+      refusal =
+          "row times from " + vpNumberText(*std::min_element(rowTimes.begin(), rowTimes.end())) + " to " +
+          vpNumberText(*std::max_element(rowTimes.begin(), rowTimes.end())) +
+          " s: not all that blinks has that frequency; show one lamp only, or name all of them (--lamps)";
+      return 0;
+    }
+    return middle;
   }
   // Each pair of stripes and lamp says what the row time would be, were it that lamp.
   struct Vote {

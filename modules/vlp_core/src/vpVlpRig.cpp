@@ -58,6 +58,11 @@ void readCamera(const vpYamlNode &node, vpVlpRig &rig)
 void readShutter(const vpYamlNode &node, vpRollingShutter &shutter)
 {
   shutter.rowTime = node.number("row_time_s", Range::positive);
+  static const double longest = 0.01; // s: a picture of 480 lines would take five seconds
+  if (shutter.rowTime > longest) {
+    node.fail("row_time_s",
+              vpNumberText(shutter.rowTime) + ", expected seconds, up to " + vpNumberText(longest));
+  }
   shutter.rowTimeSigma =
       node.number("row_time_sigma_s", Range::notNegative, vpVlpRig::uncalibratedRowTime * shutter.rowTime);
   shutter.exposure = node.number("exposure_s", Range::positive);

@@ -59,7 +59,7 @@ std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt, d
     return "no stripes";
   }
   if (seen.signal == Signal::coded && seen.chips.empty()) {
-    return "coded, and no whole word seen";
+    return "neither PWM nor a word seen whole";
   }
   if (!(seen.frequencySigma < maxFrequencyDoubt * seen.frequency)) {
     return "too few stripes for a frequency";
