@@ -98,6 +98,7 @@ private:
                  const std::vector<size_t> &usable, bool proven);
   bool correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
   void correct(vpVlpLocation &location, const std::vector<size_t> &usable);
+  bool bends(const vpVlpLocation &location) const;
   double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
   bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused);
   const std::vector<size_t> &inTime(const vpVlpLocation &location, const std::vector<size_t> &which) const;
