@@ -53,22 +53,27 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
       (unknown && beginAnew(location, location.observations, whole, false))) {
     return;
   }
-  apart = location.observations;
+  apart = changed ? all : location.observations;
   const bool roused = correctRestless(location, whole);
   const bool contradictory = contradicts(location, whole, roused);
+  const std::vector<size_t> &blinking = changed ? usable : whole;
   const size_t fitting = 2 * accepted(location);
-  const bool few = fitting<whole.size(), half = whole.size()> 2 && fitting == whole.size(),
+  const bool few = fitting < blinking.size(),
+             half = fitting == blinking.size() && (fitting > 2 || misplacedKnown(location, whole)),
              lost = filter.state(location.fix) == vpVlpFilter::State::lost;
-  m_disagreements = few ? m_disagreements : 0;
+  const int before = std::exchange(m_disagreements, 0);
   if (!few && !half && !lost && !contradictory) {
     return;
   }
-  const vpVlpFix alone = solve(apart, whole);
-  m_disagreements += alone.valid ? 1 : 0;
+  const vpVlpFix alone = solve(apart, blinking);
+  const bool elsewhere = alone.valid && !alone.ambiguous && asBefore(apart, alone);
+  if (changed && !elsewhere && !lost) {
+    return; // hidden in part, from wherever they are seen
+  }
+  m_disagreements = (few || fitting == 2 ? before : 0) + (alone.valid ? 1 : 0);
   static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
-  if (alone.valid && !alone.ambiguous && asBefore(apart, alone) &&
-      (lost || contradictory || m_disagreements >= enough ||
-       (alone.degreesOfFreedom > 0 && alone.lamps.size() > accepted(location)))) {
+  if (elsewhere && (lost || contradictory || m_disagreements >= enough ||
+                    (alone.degreesOfFreedom > 0 && alone.lamps.size() > accepted(location)))) {
     if (contradictory) {
       filter.doubtClaims();
     }
@@ -83,6 +88,15 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     location.fix = vpVlpFix();
     location.fix.refusal = "the lamps agree with each other, and not with the robot's motion";
   }
+}
+
+//! Whether a lamp that was in its place in the frames before is not.
+bool vpVlpLocalizer::misplacedKnown(const vpVlpLocation &location, const std::vector<size_t> &which) const
+{
+  const std::vector<const vpLamp *> &lamps = lampsOf(location.observations);
+  return std::any_of(which.begin(), which.end(), [&](size_t i) {
+    return lamps[i] != nullptr && location.observations[i].remark == misplaced && m_trust->knows(*lamps[i]);
+  });
 }
 
 /*!

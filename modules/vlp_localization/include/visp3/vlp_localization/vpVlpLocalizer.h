@@ -96,6 +96,7 @@ private:
   bool vague(double time) const;
   bool beginAnew(vpVlpLocation &location, std::vector<vpLampObservation> observations,
                  const std::vector<size_t> &usable, bool proven);
+  bool misplacedKnown(const vpVlpLocation &location, const std::vector<size_t> &which) const;
   bool correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
   void correct(vpVlpLocation &location, const std::vector<size_t> &usable);
   bool bends(const vpVlpLocation &location) const;
