@@ -80,6 +80,8 @@ void vpVlpFilter::mark(double time)
     return;
   }
   m_moved = m_movable = 0;
+  m_information.setZero();
+  m_sights = 0;
   advance(time);
   m_markTime = m_time;
   m_x.segment<6>(mark0) = m_x.head<6>();
@@ -205,6 +207,15 @@ void vpVlpFilter::update(const vpLampSight &lamp)
     const Innovation seen = innovation(lamp, predicted);
     weighMotion(seen, lamp.covariance);
     weighNoise(seen, lamp.covariance);
+    Eigen::Matrix<double, 4, 2> byPose = Eigen::Matrix<double, 4, 2>::Zero();
+    for (int k = 0; k < predicted.H.count; ++k) {
+      const Eigen::Index index = predicted.H.at[static_cast<size_t>(k)];
+      if (index <= yaw) {
+        byPose.row(index) = predicted.H.rows.row(k);
+      }
+    }
+    m_information += byPose * lamp.covariance.inverse() * byPose.transpose();
+    ++m_sights;
     measure<2>(predicted.H, seen.ray, m_noise * lamp.covariance);
   }
 }
@@ -302,9 +313,13 @@ vpVlpFilter::Pose vpVlpFilter::poseOf(Index first) const
   const Eigen::Matrix3d byAngles = rotationByAngles(state);
   const auto P = m_P.block<6, 6>(first, first);
   pose.covariance.topLeftCorner<3, 3>() = P.topLeftCorner<3, 3>();
+  pose.covariance.topLeftCorner<3, 3>() += m_common.topLeftCorner<3, 3>();
   pose.covariance.topRightCorner<3, 3>() = P.topRightCorner<3, 3>() * byAngles.transpose();
   pose.covariance.bottomLeftCorner<3, 3>() = byAngles * P.bottomLeftCorner<3, 3>();
   pose.covariance.bottomRightCorner<3, 3>() = byAngles * P.bottomRightCorner<3, 3>() * byAngles.transpose();
+  pose.covariance.topRightCorner<3, 1>() += m_common.topRightCorner<3, 1>();
+  pose.covariance.bottomLeftCorner<1, 3>() += m_common.bottomLeftCorner<1, 3>();
+  pose.covariance(5, 5) += m_common(3, 3);
   return pose;
 }
 

@@ -76,6 +76,7 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   m_unrest = steady;
   forgetVelocity();
   m_aside = false;
+  m_common.setZero();
   m_startX = m_x;
   m_startP = m_P;
 }
@@ -127,6 +128,14 @@ void vpVlpFilter::conclude()
     for (const Index first : {x, mark0}) {
       m_x(first + yaw) = std::remainder(m_x(first + yaw), 2 * M_PI);
       carryAlong(first, m_offset.segment<2>(first));
+    }
+  }
+  if (m_noise >= 1) {
+    m_common.setZero();
+  } else if (m_sights > 1) {
+    const Eigen::Matrix4d common = (1 - m_noise) * m_information.inverse();
+    if (common.allFinite() && common.diagonal().minCoeff() > 0) {
+      m_common = common;
     }
   }
 }

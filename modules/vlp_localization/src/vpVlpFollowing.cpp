@@ -18,7 +18,7 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double surprising = 6;     // standard deviations of a chi-square, of a robot that may start and stop
+const double surprising = 3;     // standard deviations of a chi-square, of a robot that may start and stop
 const double manoeuvring = 0.05; // share of the random accelerations, which a long readout shows
 const int young = 3;             // frames since the start: its velocity is not known, or rests on the claims
 const char *const misplaced = "not where the robot's motion has it";

@@ -160,7 +160,11 @@ public:
     well enough: then nothing changes.
   */
   bool linearizeAbout(const vpVlpFilter &corrected);
-  //! From here on about the estimate again.
+  /*!
+    The lamps of a frame are through: from here on about the estimate again. What the lamps' points are stated to
+    be off by and innovations do not show is alike in all frames, as where stripes hide the same of an outline in
+    each: no averaging takes it away, and poses have it in their covariance.
+  */
   void conclude();
 
   /*!
@@ -280,6 +284,9 @@ private:
   double m_placeDoubt = 0;            // m, added to what the map says of its lamps
   double m_noise = 1;                 // variance of the lamps' points, as a share of the stated one
   int m_weighed = 0;                  // points that it rests on
+  Eigen::Matrix4d m_information = Eigen::Matrix4d::Zero(); // of x, y, z and yaw, by the lamps since the mark
+  int m_sights = 0;                                        // lamps since the mark
+  Eigen::Matrix4d m_common = Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
   double m_unrest = 1;                // share of the random accelerations
   double m_movable = 0;       // degrees of freedom, since the mark, of innovations that motion may explain
   double m_moved = 0;         // their Mahalanobis distances squared
