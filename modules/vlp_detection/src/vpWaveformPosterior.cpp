@@ -56,8 +56,7 @@ void vpWaveformFit::integrate()
 
   const Posterior found = posterior();
   m_x = found.mean;
-  const double misplaced =
-      vpStripeLimits::untrue * gap() * m_x(frequency); // periods
+  const double misplaced = vpStripeLimits::untrue * gap() * m_x(frequency); // periods
   Vector doubt = Vector::Zero();
   doubt(duty) = doubt(phaseDifference) = misplaced;
   doubt(frequency) = misplaced / m_half;

@@ -70,8 +70,7 @@ void vpVlpLocalizer::addMotionDoubt(vpVlpLocation &location, const std::vector<s
     const vpLampSight sight = vpLampSight::from(*lamps[i], seen, m_rig.camera);
     const vpPredictedRay ray = predictRay(sight.position, pose, frame);
     if (ray.inFront) {
-      const vpMatrix6d weight =
-          ray.derivative.transpose() * rayDoubt(sight, ray).inverse() * ray.derivative;
+      const vpMatrix6d weight = ray.derivative.transpose() * rayDoubt(sight, ray).inverse() * ray.derivative;
       normal += weight;
       moved += (timeOf(location, seen) - location.timestamp) * weight * byVelocity;
     }

@@ -278,8 +278,8 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
 }
 
 /*!
-  The covariance of a place that was corrected by \e shift. A turn about a lamp, which its ray does not tell, is
-  to stay untold then, else corrections alone would tell the heading. So the covariance is that of the
+  The covariance of a place that was corrected by \e shift. A turn about a lamp, which its ray does not tell,
+  is to stay untold then, else corrections alone would tell the heading. So the covariance is that of the
   right-invariant error (Barrau and Bonnabel 2017), in which an error of the heading turns the place about the
   origin of w.
 */

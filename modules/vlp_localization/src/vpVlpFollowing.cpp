@@ -138,11 +138,17 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
     again();
     attempt();
   }
-  if (halfOrLess() || (scratch.before.unrest() == 1 &&
-                       beyondMean(location.fix.chiSquare, location.fix.degreesOfFreedom) > surprising)) {
+  auto surprises = [&] {
+    return scratch.before.unrest() == 1 &&
+           beyondMean(location.fix.chiSquare, location.fix.degreesOfFreedom) > surprising;
+  };
+  if (halfOrLess() || surprises()) {
     scratch.before.forgetVelocity();
     again();
     attempt();
+  }
+  if (surprises()) { // nothing that a robot does: by Birge's ratio
+    location.fix.covariance *= location.fix.chiSquare / location.fix.degreesOfFreedom;
   }
   return roused;
 }

@@ -97,8 +97,8 @@ public:
   void start(const vpHomogeneousMatrix &wMb, double time);
   //! The same with the lamps that the state has, their errors as uncertain as at first: takes no memory.
   void restart(const vpHomogeneousMatrix &wMb, double time);
-  //! The same start once more, linearised, up to conclude(), about what the lamps since then have shown: their
-  //! marked() pose and velocity. The lamps are to follow again.
+  //! The same start once more, linearised, up to conclude(), about what the lamps since then have shown:
+  //! their marked() pose and velocity. The lamps are to follow again.
   void startAgain();
   void stop() { m_started = false; }
   bool started() const { return m_started; } // else time, lamps and marks change nothing
@@ -156,14 +156,14 @@ public:
   /*!
     Linearises what follows about the path on which \e corrected has come to its mark(), up to conclude(): the
     estimate stays what it is, and is carried along as an offset from that path (iterated filter with the
-    interval before the mark smoothed, Bell and Cathey 1993). \return False along odometry, which says the path
-    well enough: then nothing changes.
+    interval before the mark smoothed, Bell and Cathey 1993). \return False along odometry, which says the
+    path well enough: then nothing changes.
   */
   bool linearizeAbout(const vpVlpFilter &corrected);
   /*!
-    The lamps of a frame are through: from here on about the estimate again. What the lamps' points are stated to
-    be off by and innovations do not show is alike in all frames, as where stripes hide the same of an outline in
-    each: no averaging takes it away, and poses have it in their covariance.
+    The lamps of a frame are through: from here on about the estimate again. What the lamps' points are stated
+    to be off by and innovations do not show is alike in all frames, as where stripes hide the same of an
+    outline in each: no averaging takes it away, and poses have it in their covariance.
   */
   void conclude();
 
@@ -272,10 +272,10 @@ private:
   double m_markTime = 0; // s
   Vector m_x;
   Matrix m_P;
-  Vector m_offset;        // of the estimate from m_x,
-  bool m_aside = false;   // where it is not m_x: see linearizeAbout()
-  Vector m_startX;        // m_x,
-  Matrix m_startP;        // and m_P, at the start
+  Vector m_offset;                                    // of the estimate from m_x,
+  bool m_aside = false;                               // where it is not m_x: see linearizeAbout()
+  Vector m_startX;                                    // m_x,
+  Matrix m_startP;                                    // and m_P, at the start
   std::vector<std::string> m_lamps;                   // ids whose errors are states, in their order
   std::vector<double> m_placeSigmas;                  // m, of each at the start
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
@@ -286,11 +286,12 @@ private:
   int m_weighed = 0;                  // points that it rests on
   Eigen::Matrix4d m_information = Eigen::Matrix4d::Zero(); // of x, y, z and yaw, by the lamps since the mark
   int m_sights = 0;                                        // lamps since the mark
-  Eigen::Matrix4d m_common = Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
-  double m_unrest = 1;                // share of the random accelerations
-  double m_movable = 0;       // degrees of freedom, since the mark, of innovations that motion may explain
-  double m_moved = 0;         // their Mahalanobis distances squared
-  double m_followed = -1e300; // s, end of the interval whose odometry the velocity is
+  Eigen::Matrix4d m_common =
+      Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
+  double m_unrest = 1;         // share of the random accelerations
+  double m_movable = 0;        // degrees of freedom, since the mark, of innovations that motion may explain
+  double m_moved = 0;          // their Mahalanobis distances squared
+  double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 
 END_VISP_NAMESPACE
