@@ -21,6 +21,21 @@ void average(double &mean, double &sigma, double value, double valueSigma)
   mean = (weight * mean + more * value) / (weight + more);
   sigma = 1 / std::sqrt(weight + more);
 }
+//! What is new in each frame averages out, what frames share does not.
+void average(double &noise, double &sigma, double weight, double otherNoise, double otherSigma, double other)
+{
+  auto shared = [](double all, double own) { return std::sqrt(std::max(0.0, all * all - own * own)); };
+  const double share = other / (weight + other),
+               common = (1 - share) * shared(sigma, noise) + share * shared(otherSigma, otherNoise);
+  noise = std::hypot((1 - share) * noise, share * otherNoise);
+  sigma = std::hypot(noise, common);
+}
+
+double noiseOf(const vpStripeFeatures &seen)
+{
+  return std::isnan(seen.frequencyNoise) ? seen.frequencySigma
+                                         : std::min(seen.frequencyNoise, seen.frequencySigma);
+}
 } // namespace
 
 bool vpLedIdEvidence::tells(const vpStripeFeatures &seen)
@@ -58,14 +73,23 @@ bool vpLedIdEvidence::add(const vpStripeFeatures &seen)
     const bool first = m_frames == 0;
     m_features = seen;
     m_frames = 1;
+    m_weight = 1 / (seen.frequencySigma * seen.frequencySigma);
     return first;
   }
   const vpStripeFeatures before = m_features;
   m_features = seen; // stripes, area, modulation and misfit are those of the latest frame
-  m_features.frequency = before.frequency;
+  const double weight = 1 / (seen.frequencySigma * seen.frequencySigma),
+               noise = noiseOf(before) / before.frequencySigma, more = noiseOf(seen) / seen.frequencySigma;
+  m_features.frequency = (m_weight * before.frequency + weight * seen.frequency) / (m_weight + weight);
   m_features.frequencySigma = before.frequencySigma;
-  average(m_features.frequency, m_features.frequencySigma, seen.frequency, seen.frequencySigma);
-  m_features.frequencyBound = 1 / std::hypot(1 / before.frequencyBound, 1 / seen.frequencyBound);
+  m_features.frequencyNoise = noiseOf(before);
+  average(m_features.frequencyNoise, m_features.frequencySigma, m_weight, noiseOf(seen), seen.frequencySigma,
+          weight);
+  m_features.frequencyBound = before.frequencyBound;
+  double boundNoise = noise * before.frequencyBound;
+  average(boundNoise, m_features.frequencyBound, m_weight, more * seen.frequencyBound, seen.frequencyBound,
+          weight);
+  m_weight += weight;
   m_features.alongDuty = vpDutyRidge::together(before, seen);
   if (!m_features.alongDuty.empty()) {
     vpDutyRidge::settle(m_features);

@@ -166,6 +166,7 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
   features.frequency = fit.value(P::frequency);
   features.frequencySigma = fit.sigma(P::frequency);
   features.frequencyBound = fit.frequencyBound();
+  features.frequencyNoise = fit.frequencyNoise();
   features.duty = fit.value(P::duty);
   features.dutySigma = fit.sigma(P::duty);
   features.exposure = fit.value(P::exposure);

@@ -78,6 +78,9 @@ public:
     (Rife and Boorstyn 1974), its edges as often as not in gaps between the exposures. After integrate().
   */
   double frequencyBound() const;
+  //! What noise leaves of the frequency's standard deviation, Hz; the rest is of where edges hide from the
+  //! lines. After integrate().
+  double frequencyNoise() const;
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
   //! Share of the stripes' power left unexplained, beyond what noise explains.
@@ -101,6 +104,8 @@ private:
   //! Whether few lines make a pattern that repeats over the whole profile: its edges pass from line to line
   //! all at once.
   bool repeats() const;
+  double gap() const { return std::max(0.0, m_line - m_profile->exposure); } // s, from exposure to exposure
+  double sinusoidSigma() const;
   void prepareSums();
   void evaluateWave(const Vector &x, const Eigen::ArrayXd &time, vpPulseWave &wave,
                     vpPulseWave &second) const;

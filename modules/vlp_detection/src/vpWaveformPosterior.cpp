@@ -56,8 +56,7 @@ void vpWaveformFit::integrate()
 
   const Posterior found = posterior();
   m_x = found.mean;
-  const double misplaced =
-      vpStripeLimits::untrue * std::max(0.0, m_line - m_profile->exposure) * m_x(frequency); // periods
+  const double misplaced = vpStripeLimits::untrue * gap() * m_x(frequency); // periods
   Vector doubt = Vector::Zero();
   doubt(duty) = doubt(phaseDifference) = misplaced;
   doubt(frequency) = misplaced / m_half;
@@ -162,7 +161,8 @@ vpDutySlice vpWaveformFit::slice(double atDuty)
           least};
 }
 
-double vpWaveformFit::frequencyBound() const
+//! Of the frequency of a sinusoid as strong and as noisy, Hz.
+double vpWaveformFit::sinusoidSigma() const
 {
   // Of all lines that there might be: those that there are may all miss the brightest moment.
   static const int moments = 64;
@@ -173,12 +173,21 @@ double vpWaveformFit::frequencyBound() const
   const Eigen::ArrayXd information = 0.5 / m_inflation * m_weight * (0.5 * swing * envelope()).square();
   const double weight = information.sum(), mean = (information * m_time).sum() / weight,
                spread = (information * (m_time - mean).square()).sum();
-  const double sinusoid = 1 / (2 * M_PI * std::sqrt(std::max(spread, 1e-300)));
+  return 1 / (2 * M_PI * std::sqrt(std::max(spread, 1e-300)));
+}
+
+double vpWaveformFit::frequencyBound() const
+{
   // Edges that lie in a gap are anywhere in it; a line through all of them over the time has this slope's
   // error.
-  const double gap = std::max(0.0, m_line - m_profile->exposure), f = m_x(frequency);
+  const double f = m_x(frequency);
   const double edges = std::max(2.0, 2 * m_half * 2 * pulses() * f);
-  return std::hypot(sinusoid, f * gap / (2 * m_half * std::sqrt(edges)));
+  return std::hypot(sinusoidSigma(), f * gap() / (2 * m_half * std::sqrt(edges)));
+}
+
+double vpWaveformFit::frequencyNoise() const
+{
+  return gap() > 0 || repeats() ? std::min(m_sigma(frequency), sinusoidSigma()) : m_sigma(frequency);
 }
 
 /*!

@@ -135,22 +135,25 @@ std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &se
                            : "";
 }
 
-bool vpLampTrust::inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const
+bool vpLampTrust::knows(const vpLamp &lamp) const
 {
   const auto found = m_past.find(lamp.id);
-  const bool before = found != m_past.end() && found->second.frames >= known;
+  return found != m_past.end() && found->second.frames >= known;
+}
+
+bool vpLampTrust::inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const
+{
   vpVlpFilter::Innovation moved = innovation;
   moved.ray -= offset(lamp);
-  return moved.distance(before ? placeTolerance : mapTolerance) < gate * gate;
+  return moved.distance(knows(lamp) ? placeTolerance : mapTolerance) < gate * gate;
 }
 
 Eigen::Vector2d vpLampTrust::offset(const vpLamp &lamp) const
 {
-  const auto found = m_past.find(lamp.id);
-  if (found == m_past.end() || found->second.frames < known) {
+  if (!knows(lamp)) {
     return Eigen::Vector2d::Zero();
   }
-  const Past &past = found->second;
+  const Past &past = m_past.at(lamp.id);
   static const double chance = 13.8; // chi-square of two, 1 in 1000
   return past.offset.dot(past.doubt.inverse() * past.offset) > chance ? past.offset : Eigen::Vector2d(0, 0);
 }

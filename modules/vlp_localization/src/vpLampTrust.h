@@ -38,6 +38,9 @@ public:
   //! Whether it is as large and of the shape as before; else why not, in a few words.
   std::string changed(const vpLamp &lamp, const vpLampObservation &seen, const vpLampExtent &expected);
 
+  //! Whether it was seen in its place for some frames.
+  bool knows(const vpLamp &lamp) const;
+
   //! Whether it is where the filter expects it.
   bool inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const;
 

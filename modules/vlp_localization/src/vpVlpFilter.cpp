@@ -80,11 +80,16 @@ void vpVlpFilter::mark(double time)
     return;
   }
   m_moved = m_movable = 0;
+  m_information.setZero();
+  m_sights = 0;
   advance(time);
   m_markTime = m_time;
   m_x.segment<6>(mark0) = m_x.head<6>();
   m_P.middleRows<6>(mark0) = m_P.middleRows<6>(x);
   m_P.middleCols<6>(mark0) = m_P.middleCols<6>(x);
+  if (m_aside) {
+    m_offset.segment<6>(mark0) = m_offset.head<6>();
+  }
 }
 
 //! Of the lamp's error in the state, -1 where it has none.
@@ -100,6 +105,9 @@ void vpVlpFilter::addLamp(const vpLampSight &lamp)
   m_x.conservativeResizeLike(Vector::Zero(n + 3));
   m_P.conservativeResizeLike(Matrix::Zero(n + 3, n + 3));
   m_P.bottomRightCorner<3, 3>().diagonal().setConstant(square(placeSigma(lamp)));
+  if (m_aside) {
+    m_offset.conservativeResizeLike(Vector::Zero(n + 3));
+  }
   m_lamps.push_back(lamp.id);
   m_placeSigmas.push_back(placeSigma(lamp));
 }
@@ -168,7 +176,7 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp, const P
   Innovation innovation;
   innovation.inFront = predicted.inFront;
   if (predicted.inFront) {
-    innovation.ray = lamp.ray - predicted.ray;
+    innovation.ray = lamp.ray - predicted.ray - aside(predicted.H);
     innovation.covariance = predicted.ownDoubt + m_noise * lamp.covariance;
     const Derivative<2> &H = predicted.H;
     for (int k = 0; k < H.count; ++k) {
@@ -199,7 +207,16 @@ void vpVlpFilter::update(const vpLampSight &lamp)
     const Innovation seen = innovation(lamp, predicted);
     weighMotion(seen, lamp.covariance);
     weighNoise(seen, lamp.covariance);
-    measure<2>(predicted.H, lamp.ray - predicted.ray, m_noise * lamp.covariance);
+    Eigen::Matrix<double, 4, 2> byPose = Eigen::Matrix<double, 4, 2>::Zero();
+    for (int k = 0; k < predicted.H.count; ++k) {
+      const Eigen::Index index = predicted.H.at[static_cast<size_t>(k)];
+      if (index <= yaw) {
+        byPose.row(index) = predicted.H.rows.row(k);
+      }
+    }
+    m_information += byPose * lamp.covariance.inverse() * byPose.transpose();
+    ++m_sights;
+    measure<2>(predicted.H, seen.ray, m_noise * lamp.covariance);
   }
 }
 
@@ -223,7 +240,7 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
   // about ever other linearisations, would seem to tell them.
   K.middleRows(mount, mark0 - mount).setZero();
   K.bottomRows(n - lamps).setZero();
-  m_x += K.lazyProduct(innovation);
+  (m_aside ? m_offset : m_x) += K.lazyProduct(innovation);
   m_x(yaw) = std::remainder(m_x(yaw), 2 * M_PI);
   // Joseph's form, which holds for any gain, multiplied out: P - K W' - W K' with W = P H' - K S / 2.
   const Eigen::Matrix<double, Values, Values> half = 0.5 * S;
@@ -244,16 +261,9 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
   };
   mirror(mount, mark0);
   mirror(lamps, n);
-  // A turn about the lamp, which its ray does not tell, is to stay untold once the place was corrected, else
-  // corrections alone would tell the heading. So the covariance is that of the right-invariant error (Barrau
-  // and Bonnabel 2017), in which an error of the heading turns the place about the origin of w.
-  for (const int first : {x, mark0}) {
-    const Eigen::Vector2d turned(-K.row(first + 1).dot(innovation), K.row(first).dot(innovation));
-    for (int k = 0; k < 2; ++k) {
-      m_P.row(first + k) += turned(k) * m_P.row(first + yaw);
-    }
-    for (int k = 0; k < 2; ++k) {
-      m_P.col(first + k) += turned(k) * m_P.col(first + yaw);
+  for (const Index first : {x, mark0}) {
+    if (!m_aside) {
+      carryAlong(first, {K.row(first).dot(innovation), K.row(first + 1).dot(innovation)});
     }
   }
   for (const auto &[from, until] : estimated) { // but for rounding it is so
@@ -264,6 +274,23 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
         }
       }
     }
+  }
+}
+
+/*!
+  The covariance of a place that was corrected by \e shift. A turn about a lamp, which its ray does not tell,
+  is to stay untold then, else corrections alone would tell the heading. So the covariance is that of the
+  right-invariant error (Barrau and Bonnabel 2017), in which an error of the heading turns the place about the
+  origin of w.
+*/
+void vpVlpFilter::carryAlong(Index first, const Eigen::Vector2d &shift)
+{
+  const Eigen::Vector2d turned(-shift.y(), shift.x());
+  for (int k = 0; k < 2; ++k) {
+    m_P.row(first + k) += turned(k) * m_P.row(first + yaw);
+  }
+  for (int k = 0; k < 2; ++k) {
+    m_P.col(first + k) += turned(k) * m_P.col(first + yaw);
   }
 }
 
@@ -286,9 +313,13 @@ vpVlpFilter::Pose vpVlpFilter::poseOf(Index first) const
   const Eigen::Matrix3d byAngles = rotationByAngles(state);
   const auto P = m_P.block<6, 6>(first, first);
   pose.covariance.topLeftCorner<3, 3>() = P.topLeftCorner<3, 3>();
+  pose.covariance.topLeftCorner<3, 3>() += m_common.topLeftCorner<3, 3>();
   pose.covariance.topRightCorner<3, 3>() = P.topRightCorner<3, 3>() * byAngles.transpose();
   pose.covariance.bottomLeftCorner<3, 3>() = byAngles * P.bottomLeftCorner<3, 3>();
   pose.covariance.bottomRightCorner<3, 3>() = byAngles * P.bottomRightCorner<3, 3>() * byAngles.transpose();
+  pose.covariance.topRightCorner<3, 1>() += m_common.topRightCorner<3, 1>();
+  pose.covariance.bottomLeftCorner<1, 3>() += m_common.bottomLeftCorner<1, 3>();
+  pose.covariance(5, 5) += m_common(3, 3);
   return pose;
 }
 

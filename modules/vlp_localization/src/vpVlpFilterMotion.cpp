@@ -49,19 +49,22 @@ void vpVlpFilter::addOdometry(const vpOdometry &sample)
   }
 }
 
-/*!
-  The base on its arc for \e dt, its velocity constant; backwards where that is negative. \e accelerates: its
-  velocity walks at random.
-*/
+//! The base on its arc for \e dt, its velocity constant; backwards where that is negative.
+void vpVlpFilter::arc(double dt)
+{
+  const double bend = 0.5 * m_x(w) * dt, chord = std::abs(bend) > 1e-9 ? std::sin(bend) / bend : 1;
+  m_x.head<2>() += Eigen::Rotation2Dd(m_x(yaw) + bend) * (chord * dt * m_x.segment<2>(vx));
+  m_x(yaw) = std::remainder(m_x(yaw) + m_x(w) * dt, 2 * M_PI);
+}
+
+//! The same with its covariance. \e accelerates: its velocity walks at random.
 void vpVlpFilter::move(double dt, bool accelerates)
 {
   const Eigen::Vector2d v = m_x.segment<2>(vx);
-  const double heading = m_x(yaw) + 0.5 * m_x(w) * dt; // chord of the arc
-  const Eigen::Rotation2Dd R(heading);
-  const Eigen::Vector2d ahead = R * v, left(-ahead.y(), ahead.x()); // left: derivative by the heading
   const double bend = 0.5 * m_x(w) * dt, chord = std::abs(bend) > 1e-9 ? std::sin(bend) / bend : 1;
-  m_x.head<2>() += chord * dt * ahead;
-  m_x(yaw) = std::remainder(m_x(yaw) + m_x(w) * dt, 2 * M_PI);
+  const Eigen::Rotation2Dd R(m_x(yaw) + bend);
+  const Eigen::Vector2d ahead = R * v, left(-ahead.y(), ahead.x()); // left: derivative by the heading
+  arc(dt);
 
   // P = F P F', F being the identity but for the rows of x, y and yaw.
   const Eigen::Matrix2d turned = dt * R.toRotationMatrix();
@@ -74,6 +77,9 @@ void vpVlpFilter::move(double dt, bool accelerates)
   };
   carry(m_P);
   carry(m_P.transpose());
+  if (m_aside) {
+    carry(m_offset);
+  }
 
   const double t = std::abs(dt);
   static const double least = 0.01; // of the drift: lamps' outlines are not wrong anew in every frame
@@ -125,7 +131,7 @@ void vpVlpFilter::followOdometry(const vpOdometry &before, const vpOdometry &sam
   R(2, 2) = square(odometryTurnRate) + square(share * sample.w) + square(within * (sample.w - before.w));
   const Eigen::Vector3d innovation(sample.v - (1 + m_x(speedScale)) * m_x(vx), -m_x(vy),
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
-  measure<3>(H, innovation, R);
+  measure<3>(H, innovation - aside(H), R);
 }
 
 void vpVlpFilter::advance(double time)

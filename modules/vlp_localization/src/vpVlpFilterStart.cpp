@@ -75,21 +75,69 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
       0.1; // its first two frames tell whether camera and map are as good as they say
   m_unrest = steady;
   forgetVelocity();
+  m_aside = false;
+  m_common.setZero();
+  m_startX = m_x;
   m_startP = m_P;
 }
 
 void vpVlpFilter::startAgain()
 {
-  const Eigen::Vector3d velocity = m_x.segment<3>(vx);
-  const Eigen::Matrix<double, 6, 1> marked = m_x.segment<6>(mark0);
-  m_x.setZero(m_startP.rows());
-  m_x.head<6>() = marked;
-  m_x.segment<3>(vx) = velocity;
+  Eigen::Matrix<double, 9, 1> path;
+  path << m_x.segment<6>(mark0), m_x.segment<3>(vx);
+  m_x = m_startX;
   m_P = m_startP;
   const auto started = static_cast<size_t>((m_startP.rows() - lamps) / 3);
   m_lamps.resize(started);
   m_placeSigmas.resize(started);
   m_time = m_markTime;
+  standAside(path);
+}
+
+//! From here on linearised about a pose and velocity that are not the estimate.
+void vpVlpFilter::standAside(const Eigen::Matrix<double, 9, 1> &path)
+{
+  m_offset.setZero(m_x.size());
+  m_offset.head<9>() = m_x.head<9>() - path;
+  m_offset(yaw) = std::remainder(m_offset(yaw), 2 * M_PI);
+  m_x.head<9>() = path;
+  carryAlong(x, -m_offset.head<2>());
+  m_aside = true;
+}
+
+bool vpVlpFilter::linearizeAbout(const vpVlpFilter &corrected)
+{
+  if (m_odometry.size() > 1) {
+    return false;
+  }
+  const Eigen::Matrix<double, 9, 1> estimate = m_x.head<9>();
+  m_x.head<6>() = corrected.m_x.segment<6>(mark0);
+  m_x.segment<3>(vx) = corrected.velocity();
+  arc(m_time - corrected.m_markTime);
+  const Eigen::Matrix<double, 9, 1> path = m_x.head<9>();
+  m_x.head<9>() = estimate;
+  standAside(path);
+  return true;
+}
+
+void vpVlpFilter::conclude()
+{
+  if (m_aside) {
+    m_aside = false;
+    m_x += m_offset;
+    for (const Index first : {x, mark0}) {
+      m_x(first + yaw) = std::remainder(m_x(first + yaw), 2 * M_PI);
+      carryAlong(first, m_offset.segment<2>(first));
+    }
+  }
+  if (m_noise >= 1) {
+    m_common.setZero();
+  } else if (m_sights > 1) {
+    const Eigen::Matrix4d common = (1 - m_noise) * m_information.inverse();
+    if (common.allFinite() && common.diagonal().minCoeff() > 0) {
+      m_common = common;
+    }
+  }
 }
 
 void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
@@ -98,18 +146,24 @@ void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
   const double heading = std::atan2(pose.wRb(1, 0), pose.wRb(0, 0));
   const double turned = std::remainder(m_x(yaw) - heading, 2 * M_PI);
   const Eigen::Vector2d way = m_x.head<2>() - pose.wtb.head<2>();
-  m_x.segment<2>(vx) = Eigen::Rotation2Dd(-heading - turned / 2) * way / since;
-  m_x(w) = turned / since;
-  // A single frame's pose is as good as its map, and its motion in between need not have been constant.
+  const Eigen::Vector2d mean = Eigen::Rotation2Dd(-heading - turned / 2) * way / since;
+  // A single frame's pose is as good as its map.
   static const double placeSigma = 0.003, turnSigma = 0.005; // m, rad
   const double place = std::sqrt(std::max(before.covariance(0, 0), before.covariance(1, 1))) + placeSigma,
                turn = std::sqrt(before.covariance(5, 5)) + turnSigma;
-  for (int i : {vx, vy, w}) {
+  const auto believe = [&](Index i, double meanVelocity, double error, double random, double usual) {
+    // At the end of a way a velocity that walks at random is off its mean by a third of what it walks.
+    const double doubt = square(error / since) + square(random) * since / 3,
+                 share = square(usual) / (square(usual) + doubt);
+    m_x(i) = share * meanVelocity;
     m_P.row(i).setZero();
     m_P.col(i).setZero();
-    m_P(i, i) = i == w ? square(turn / since) + square(m_unrest * turnAcceleration) * since
-                       : square(place / since) + square(m_unrest * acceleration) * since;
-  }
+    m_P(i, i) = share * doubt;
+  };
+  believe(vx, mean.x(), place, acceleration, startVelocity);
+  believe(vy, mean.y(), place, acceleration, startVelocity);
+  believe(w, turned / since, turn, turnAcceleration, startTurnRate);
+  m_startX = m_x;
   m_startP = m_P;
 }
 

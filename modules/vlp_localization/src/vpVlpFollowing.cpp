@@ -18,7 +18,7 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double mostStrain = 8;     // standard deviations
+const double surprising = 3;     // standard deviations of a chi-square, of a robot that may start and stop
 const double manoeuvring = 0.05; // share of the random accelerations, which a long readout shows
 const int young = 3;             // frames since the start: its velocity is not known, or rests on the claims
 const char *const misplaced = "not where the robot's motion has it";
@@ -35,73 +35,6 @@ size_t accepted(const vpVlpLocation &location)
                                            [](const vpLampObservation &lamp) { return lamp.accepted; }));
 }
 } // namespace
-
-//! Starts the filter at the location's pose, with the lamps that it rests on.
-void vpVlpLocalizer::begin(vpVlpLocation &location)
-{
-  filter.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
-  const bool first = !filter.started();
-  bool moving = startAt(location);
-  m_trust->forgetPlaces();
-  m_trust->mapTolerance = mapTolerance;
-  m_disagreements = m_contradictions = m_followed = 0;
-  std::vector<size_t> members;
-  for (size_t i = 0; i < location.observations.size(); ++i) {
-    if (location.observations[i].accepted) {
-      members.push_back(i);
-    }
-  }
-  if (first && strain(location, members) > mostStrain) { // later it may be a robot that starts or stops
-    filter.doubtClaims();
-    moving = startAt(location);
-  }
-  vpVlpLocation rough = location, fine = location;
-  correct(rough, members);
-  filter.startAgain();
-  m_trust->forgetPlaces();
-  addMotionDoubt(location, members);
-  correct(fine, members);
-  // One frame alone hardly tells a robot that moves from lamps that hang a little elsewhere.
-  if (moving && fine.fix.valid) {
-    location.fix.wMb = fine.fix.wMb;
-    location.fix.wMc = fine.fix.wMc;
-    location.fix.covariance = fine.fix.covariance;
-  }
-}
-
-//! What a single frame's pose is off by where the robot moved between its time stamp and the lamps' lines.
-void vpVlpLocalizer::addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const
-{
-  double since = 0; // s
-  for (size_t i : members) {
-    since += (timeOf(location, location.observations[i]) - location.timestamp) /
-             static_cast<double>(members.size());
-  }
-  const Eigen::Matrix3d doubt =
-      since * since * (filter.velocityCovariance() + filter.velocity() * filter.velocity().transpose());
-  for (int i : {0, 1}) {
-    location.fix.covariance(i, i) += std::max(doubt(0, 0), doubt(1, 1)); // whatever its heading
-  }
-  location.fix.covariance(5, 5) += doubt(2, 2);
-}
-
-//! \return Whether the velocity is what the last pose tells: there is one that the robot can have come from.
-bool vpVlpLocalizer::startAt(const vpVlpLocation &location)
-{
-  static const double recently = 1; // s
-  filter.start(location.fix.wMb, location.timestamp);
-  if (!m_lastPose || location.timestamp - m_lastPose->time >= recently) {
-    return false;
-  }
-  const double since = location.timestamp - m_lastPose->time;
-  const vpHomogeneousMatrix way = m_lastPose->fix.wMb.inverse() * location.fix.wMb;
-  const double turn = std::atan2(way[1][0], way[0][0]);
-  if (std::hypot(way[0][3], way[1][3]) > maxSpeed * since || std::abs(turn) > maxTurnRate * since) {
-    return false; // it was carried
-  }
-  filter.comeFrom(m_lastPose->fix, since);
-  return true;
-}
 
 /*!
   The pose that the filter carries, corrected. A robot that was carried away shows lamps that agree with each
@@ -120,22 +53,27 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
       (unknown && beginAnew(location, location.observations, whole, false))) {
     return;
   }
-  apart = location.observations;
+  apart = changed ? all : location.observations;
   const bool roused = correctRestless(location, whole);
   const bool contradictory = contradicts(location, whole, roused);
+  const std::vector<size_t> &blinking = changed ? usable : whole;
   const size_t fitting = 2 * accepted(location);
-  const bool few = fitting<whole.size(), half = whole.size()> 2 && fitting == whole.size(),
+  const bool few = fitting < blinking.size(),
+             half = fitting == blinking.size() && (fitting > 2 || misplacedKnown(location, whole)),
              lost = filter.state(location.fix) == vpVlpFilter::State::lost;
-  m_disagreements = few ? m_disagreements : 0;
+  const int before = std::exchange(m_disagreements, 0);
   if (!few && !half && !lost && !contradictory) {
     return;
   }
-  const vpVlpFix alone = solve(apart, whole);
-  m_disagreements += alone.valid ? 1 : 0;
+  const vpVlpFix alone = solve(apart, blinking);
+  const bool elsewhere = alone.valid && !alone.ambiguous && asBefore(apart, alone);
+  if (changed && !elsewhere && !lost) {
+    return; // hidden in part, from wherever they are seen
+  }
+  m_disagreements = (few || fitting == 2 ? before : 0) + (alone.valid ? 1 : 0);
   static const int enough = 2; // frames, where no lamp more than a pose needs bears it out
-  if (alone.valid && !alone.ambiguous && asBefore(apart, alone) &&
-      (lost || contradictory || m_disagreements >= enough ||
-       (alone.degreesOfFreedom > 0 && alone.lamps.size() > accepted(location)))) {
+  if (elsewhere && (lost || contradictory || m_disagreements >= enough ||
+                    (alone.degreesOfFreedom > 0 && alone.lamps.size() > accepted(location)))) {
     if (contradictory) {
       filter.doubtClaims();
     }
@@ -152,6 +90,15 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   }
 }
 
+//! Whether a lamp that was in its place in the frames before is not.
+bool vpVlpLocalizer::misplacedKnown(const vpVlpLocation &location, const std::vector<size_t> &which) const
+{
+  const std::vector<const vpLamp *> &lamps = lampsOf(location.observations);
+  return std::any_of(which.begin(), which.end(), [&](size_t i) {
+    return lamps[i] != nullptr && location.observations[i].remark == misplaced && m_trust->knows(*lamps[i]);
+  });
+}
+
 /*!
   Corrects by the lamps of a frame: as if the robot went on as before; where that is beyond chance, as if it
   may start, stop or turn; where few lamps fit even so, as if its velocity were anybody's guess. \return
@@ -164,33 +111,54 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
   scratch.trusted = *m_trust;
   scratch.seen = location.observations;
   auto again = [&] {
-    filter = scratch.before;
     *m_trust = scratch.trusted;
     location.observations = scratch.seen;
-    filter.rouse();
+    filter = scratch.before;
+  };
+  // Rays are not linear in a long way to where they say: about that path, then.
+  auto attempt = [&] {
+    correct(location, whole);
+    for (int round = 0; round < 2 && bends(location); ++round) {
+      scratch.there = scratch.before;
+      if (!scratch.there.linearizeAbout(filter)) {
+        return;
+      }
+      again();
+      filter = scratch.there;
+      correct(location, whole);
+    }
   };
   auto halfOrLess = [&] { return whole.size() > 1 && 2 * accepted(location) <= whole.size(); };
   bool roused = false;
-  correct(location, whole);
+  attempt();
   if (accepted(location) == 0 || halfOrLess() ||
       !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
     roused = accepted(location) > 0;
+    scratch.before.rouse();
     again();
-    correct(location, whole);
+    attempt();
   }
-  if (halfOrLess()) {
+  auto surprises = [&] {
+    return scratch.before.unrest() == 1 &&
+           beyondMean(location.fix.chiSquare, location.fix.degreesOfFreedom) > surprising;
+  };
+  if (halfOrLess() || surprises()) {
+    scratch.before.forgetVelocity();
     again();
-    filter.forgetVelocity();
-    correct(location, whole);
+    attempt();
   }
-  if (halfOrLess()) { // rays are not linear in so much: about what they say so far
-    const Eigen::Vector3d velocity = filter.velocity();
-    again();
-    filter.forgetVelocity();
-    filter.guessVelocity(velocity);
-    correct(location, whole);
+  if (surprises()) { // nothing that a robot does: by Birge's ratio
+    location.fix.covariance *= location.fix.chiSquare / location.fix.degreesOfFreedom;
   }
   return roused;
+}
+
+//! Whether lamps are so far from where the filter expected them that their rays are not linear in it.
+bool vpVlpLocalizer::bends(const vpVlpLocation &location) const
+{
+  static const double most = 0.004; // of what is linear; its square is a few hundredths of a pixel
+  return std::any_of(location.fix.residuals.begin(), location.fix.residuals.end(),
+                     [](const Eigen::Vector2d &ray) { return ray.squaredNorm() > most * most; });
 }
 
 /*!
@@ -284,6 +252,7 @@ void vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> 
     fix.degreesOfFreedom += 2;
   }
   fix.valid = true;
+  filter.conclude();
   filter.tellMarked(fix);
 }
 

@@ -14,6 +14,8 @@
 
 BEGIN_VISP_NAMESPACE
 
+const double mostStrain = 8; // standard deviations, of vpVlpLocalizer::strain()
+
 /*!
   What vpVlpLocalizer works on within a frame, kept so that the next one takes no memory: each is assigned to
   before it is read, and none means anything from frame to frame.

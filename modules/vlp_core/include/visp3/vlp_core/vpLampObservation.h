@@ -73,7 +73,10 @@ struct VISP_EXPORT vpStripeFeatures {
   double frequencySigma =
       std::numeric_limits<double>::quiet_NaN(); // Hz, of the estimate alone, row time exact
   double frequencyBound =
-      std::numeric_limits<double>::quiet_NaN();           // Hz, that sigma where no edge hides from the lines
+      std::numeric_limits<double>::quiet_NaN(); // Hz, that sigma where no edge hides from the lines
+  double frequencyNoise =
+      std::numeric_limits<double>::quiet_NaN(); // Hz, what noise leaves of frequencySigma: new in each frame,
+                                                // unlike where edges hide from the lines; NaN: all of it
   double duty = std::numeric_limits<double>::quiet_NaN(); // lit share of the period
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
   /*!

@@ -14,9 +14,13 @@ BEGIN_VISP_NAMESPACE
   one of them leaves open.
 
   Lamp and camera share no clock, so each frame measures frequency, duty and phase difference anew, with
-  errors of its own: their mean, weighted by inverse variance, is the estimate of all frames. Errors that
-  frames share (the row time's, the oscillator's, the systematic one of a duty) do not shrink by repetition;
-  the recogniser adds them, once. A word that frames agree on is wrong only where all of them are.
+  errors of its own: their mean, weighted by inverse variance, is the estimate of all frames. But where edges
+  hide from the lines, be it between short exposures, frames at a steady rate may hide them alike: the phase
+  of a lamp advances by nearly the same share of a line from frame to frame. What that leaves open of the
+  frequency (all but vpStripeFeatures::frequencyNoise) is taken as common to all frames, which is the worst
+  that it can be. Errors that frames share (the row time's, the oscillator's, the systematic one of a duty) do
+  not shrink by repetition; the recogniser adds them, once. A word that frames agree on is wrong only where
+  all of them are.
 
   \code
   vpLedIdEvidence evidence;               // of one track
@@ -56,6 +60,7 @@ public:
 private:
   vpStripeFeatures m_features;
   unsigned int m_frames = 0;
+  double m_weight = 0; // 1/Hz^2, of the frequencies so far
 };
 
 END_VISP_NAMESPACE

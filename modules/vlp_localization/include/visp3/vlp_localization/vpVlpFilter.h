@@ -97,8 +97,8 @@ public:
   void start(const vpHomogeneousMatrix &wMb, double time);
   //! The same with the lamps that the state has, their errors as uncertain as at first: takes no memory.
   void restart(const vpHomogeneousMatrix &wMb, double time);
-  //! The same start once more, linearised about what the lamps since then have shown: their marked() pose and
-  //! velocity. The lamps are to follow again.
+  //! The same start once more, linearised, up to conclude(), about what the lamps since then have shown:
+  //! their marked() pose and velocity. The lamps are to follow again.
   void startAgain();
   void stop() { m_started = false; }
   bool started() const { return m_started; } // else time, lamps and marks change nothing
@@ -152,8 +152,20 @@ public:
 
   //! Makes the velocity as uncertain as at the start: the robot has changed its mind.
   void forgetVelocity();
-  //! What it may be instead, of that uncertainty: along x and y of b (m/s), and the turn rate (rad/s).
-  void guessVelocity(const Eigen::Vector3d &velocity) { m_x.segment<3>(vx) = velocity; }
+
+  /*!
+    Linearises what follows about the path on which \e corrected has come to its mark(), up to conclude(): the
+    estimate stays what it is, and is carried along as an offset from that path (iterated filter with the
+    interval before the mark smoothed, Bell and Cathey 1993). \return False along odometry, which says the
+    path well enough: then nothing changes.
+  */
+  bool linearizeAbout(const vpVlpFilter &corrected);
+  /*!
+    The lamps of a frame are through: from here on about the estimate again. What the lamps' points are stated
+    to be off by and innovations do not show is alike in all frames, as where stripes hide the same of an
+    outline in each: no averaging takes it away, and poses have it in their covariance.
+  */
+  void conclude();
 
   /*!
     Predicts up to \e time and keeps the pose of then as a part of the state: what follows corrects it, too
@@ -219,6 +231,16 @@ private:
       rows.row(count++) = row;
     }
   };
+  //! What the estimate's offset makes of a measurement.
+  template <int Values>
+  Eigen::Matrix<double, Values, 1> aside(const Derivative<Values> &H) const
+  {
+    Eigen::Matrix<double, Values, 1> sum = Eigen::Matrix<double, Values, 1>::Zero();
+    for (int k = 0; m_aside && k < H.count; ++k) {
+      sum += m_offset(H.at[static_cast<size_t>(k)]) * H.rows.row(k).transpose();
+    }
+    return sum;
+  }
   struct Predicted;
   Predicted predict(const vpLampSight &lamp) const;
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
@@ -233,10 +255,13 @@ private:
   vpVlpFix fixOf(Index first) const;
   State stateOf(const Eigen::Matrix<double, 6, 6> &covariance) const;
   void startFrom(const vpHomogeneousMatrix &wMb, double time);
+  void standAside(const Eigen::Matrix<double, 9, 1> &path);
+  void carryAlong(Index first, const Eigen::Vector2d &shift);
   //! \param R Covariance of what was measured.
   template <int Values>
   void measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
                const Eigen::Matrix<double, Values, Values> &R);
+  void arc(double dt);
   void move(double dt, bool accelerates);
   void wander(double time);
   void followOdometry(const vpOdometry &before, const vpOdometry &sample);
@@ -247,7 +272,10 @@ private:
   double m_markTime = 0; // s
   Vector m_x;
   Matrix m_P;
-  Matrix m_startP;                                    // of m_P, at the start
+  Vector m_offset;                                    // of the estimate from m_x,
+  bool m_aside = false;                               // where it is not m_x: see linearizeAbout()
+  Vector m_startX;                                    // m_x,
+  Matrix m_startP;                                    // and m_P, at the start
   std::vector<std::string> m_lamps;                   // ids whose errors are states, in their order
   std::vector<double> m_placeSigmas;                  // m, of each at the start
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
@@ -256,10 +284,14 @@ private:
   double m_placeDoubt = 0;            // m, added to what the map says of its lamps
   double m_noise = 1;                 // variance of the lamps' points, as a share of the stated one
   int m_weighed = 0;                  // points that it rests on
-  double m_unrest = 1;                // share of the random accelerations
-  double m_movable = 0;       // degrees of freedom, since the mark, of innovations that motion may explain
-  double m_moved = 0;         // their Mahalanobis distances squared
-  double m_followed = -1e300; // s, end of the interval whose odometry the velocity is
+  Eigen::Matrix4d m_information = Eigen::Matrix4d::Zero(); // of x, y, z and yaw, by the lamps since the mark
+  int m_sights = 0;                                        // lamps since the mark
+  Eigen::Matrix4d m_common =
+      Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
+  double m_unrest = 1;         // share of the random accelerations
+  double m_movable = 0;        // degrees of freedom, since the mark, of innovations that motion may explain
+  double m_moved = 0;          // their Mahalanobis distances squared
+  double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 
 END_VISP_NAMESPACE

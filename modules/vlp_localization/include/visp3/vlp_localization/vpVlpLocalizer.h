@@ -96,8 +96,10 @@ private:
   bool vague(double time) const;
   bool beginAnew(vpVlpLocation &location, std::vector<vpLampObservation> observations,
                  const std::vector<size_t> &usable, bool proven);
+  bool misplacedKnown(const vpVlpLocation &location, const std::vector<size_t> &which) const;
   bool correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
   void correct(vpVlpLocation &location, const std::vector<size_t> &usable);
+  bool bends(const vpVlpLocation &location) const;
   double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
   bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused);
   const std::vector<size_t> &inTime(const vpVlpLocation &location, const std::vector<size_t> &which) const;
