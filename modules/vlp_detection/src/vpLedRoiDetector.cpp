@@ -13,6 +13,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "vpBackground.h"
+#include "vpBrighter.h"
 #include "vpChordShape.h"
 #include "vpLampGroup.h"
 #include "vpLevelStripes.h"
@@ -45,6 +46,33 @@ bool settled(const Group &group, double noise)
 {
   return group.roi.lampness + margin >= vpChordShape::mostLampness(2 * group.roi.box.height) &&
          significant(group, noise);
+}
+
+/*!
+  Whether a region without dark stripes, which may be a window or a part of the ceiling of any shape, holds
+  far brighter light than its own.
+*/
+bool mayHoldLamps(const Group &group, const cv::Mat_<unsigned char> &lines, double dark)
+{
+  static const double farBrighter = 1.5;
+  static const int smallest = 24; // px of a lamp's stripes; fewer are specks
+  const vpLedRoi &roi = group.roi;
+  const double grey = dark + farBrighter * group.edge.light;
+  if (static_cast<int>(roi.chords.size()) < roi.box.height || grey >= 255) {
+    return false;
+  }
+  int pixels = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    const unsigned char *row = lines[chord.line] + chord.first;
+    const int samples = chord.last - chord.first + 1;
+    if (vpBrighter::brightest(row, samples) > grey) {
+      pixels += vpBrighter::count(row, samples, static_cast<unsigned char>(grey));
+      if (pixels >= smallest) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 /*!
@@ -240,7 +268,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
             *std::max_element(group.set.stripes.begin(), group.set.stripes.end(), [&](int a, int b) {
               return level.stripes[a].box.area() < level.stripes[b].box.area();
             });
-        const bool last = settled(group, dark.noise);
+        const bool last = settled(group, dark.noise) && !mayHoldLamps(group, lines, dark.level);
         for (int s : group.set.stripes) {
           level.stripes[s].group = node;
           level.stripes[s].settled = last;
