@@ -13,9 +13,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "vpBackground.h"
+#include "vpBrighter.h"
 #include "vpChordShape.h"
 #include "vpLampGroup.h"
 #include "vpLevelStripes.h"
+#include "vpOwnStripes.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -47,12 +49,66 @@ bool settled(const Group &group, double noise)
 }
 
 /*!
-  The best regions at or above \e node: itself, or those of its children where these, weighted by their size,
-  make better lamps. So a lamp beats its own fragments, and two lamps beat the blot that joins them. Regions
-  that do not stand out of the noise count for nothing, and none is chosen. Returns the lampness of the
-  choice.
+  Whether a region without dark stripes, which may be a window or a part of the ceiling of any shape, holds
+  far brighter light than its own.
 */
-double bestBranch(const std::vector<Group> &tree, int node, double noise, std::vector<int> &chosen)
+bool mayHoldLamps(const Group &group, const cv::Mat_<unsigned char> &lines, double dark)
+{
+  static const double farBrighter = 1.5;
+  static const int smallest = 24; // px of a lamp's stripes; fewer are specks
+  const vpLedRoi &roi = group.roi;
+  const double grey = dark + farBrighter * group.edge.light;
+  if (static_cast<int>(roi.chords.size()) < roi.box.height || grey >= 255) {
+    return false;
+  }
+  int pixels = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    const unsigned char *row = lines[chord.line] + chord.first;
+    const int samples = chord.last - chord.first + 1;
+    if (vpBrighter::brightest(row, samples) > grey) {
+      pixels += vpBrighter::count(row, samples, static_cast<unsigned char>(grey));
+      if (pixels >= smallest) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/*!
+  Takes out what is but a brighter part of \e around, unlike a lamp and without stripes of its own. \return
+  Whether a lamp is left that hangs before it.
+*/
+bool onlyLampsBefore(const Group &around, const std::vector<Group> &tree,
+                     const cv::Mat_<unsigned char> &lines, std::vector<int> &above)
+{
+  static const double farLarger = 2, likeALamp = 0.5;
+  std::vector<int> lamps;
+  bool any = false;
+  for (int node : above) {
+    const Group &part = tree[node];
+    const bool like = part.roi.lampness > likeALamp,
+               own = around.size() > farLarger * part.size() && vpOwnStripes(part.roi, around.roi, lines);
+    any = any || (like && own);
+    if (like || own) {
+      lamps.push_back(node);
+    }
+  }
+  if (any) {
+    above = std::move(lamps);
+  }
+  return any;
+}
+
+/*!
+  The best regions at or above \e node: itself, or those of its children where these, weighted by their size,
+  make better lamps. So a lamp beats its own fragments, and two lamps beat the blot that joins them. A ceiling
+  that does not blink with the lamps before it never beats these, however many parts of it weigh them down.
+  Regions that do not stand out of the noise count for nothing, and none is chosen. Returns the lampness of
+  the choice.
+*/
+double bestBranch(const std::vector<Group> &tree, int node, const cv::Mat_<unsigned char> &lines,
+                  double noise, std::vector<int> &chosen)
 {
   const Group &group = tree[node];
   std::vector<int> above;
@@ -60,14 +116,23 @@ double bestBranch(const std::vector<Group> &tree, int node, double noise, std::v
   double weight = 0;
   for (int child : group.children) {
     const size_t before = above.size();
-    const double best = bestBranch(tree, child, noise, above);
+    const double best = bestBranch(tree, child, lines, noise, above);
     if (above.size() > before) {
       sum += tree[child].size() * best;
       weight += tree[child].size();
     }
   }
   const bool stands = significant(group, noise);
-  if (weight > 0 && (!stands || sum / weight > group.roi.lampness + margin)) {
+  bool better = weight > 0 && (!stands || sum / weight > group.roi.lampness + margin);
+  if (weight > 0 && !better && onlyLampsBefore(group, tree, lines, above)) {
+    better = true;
+    sum = weight = 0;
+    for (int lamp : above) {
+      sum += tree[lamp].size() * tree[lamp].roi.lampness;
+      weight += tree[lamp].size();
+    }
+  }
+  if (better) {
     chosen.insert(chosen.end(), above.begin(), above.end());
     return sum / weight;
   }
@@ -203,7 +268,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
             *std::max_element(group.set.stripes.begin(), group.set.stripes.end(), [&](int a, int b) {
               return level.stripes[a].box.area() < level.stripes[b].box.area();
             });
-        const bool last = settled(group, dark.noise);
+        const bool last = settled(group, dark.noise) && !mayHoldLamps(group, lines, dark.level);
         for (int s : group.set.stripes) {
           level.stripes[s].group = node;
           level.stripes[s].settled = last;
@@ -221,7 +286,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
   std::vector<int> chosen;
   for (size_t node = 0; node < tree.size(); ++node) {
     if (tree[node].parent < 0) {
-      bestBranch(tree, static_cast<int>(node), dark.noise, chosen);
+      bestBranch(tree, static_cast<int>(node), lines, dark.noise, chosen);
     }
   }
   std::vector<Group> large;
