@@ -59,7 +59,7 @@ std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt, d
     return "no stripes";
   }
   if (seen.signal == Signal::coded && seen.chips.empty()) {
-    return "neither PWM nor a word seen whole";
+    return "neither PWM nor a word that was seen whole";
   }
   if (!(seen.frequencySigma < maxFrequencyDoubt * seen.frequency)) {
     return "too few stripes for a frequency";
