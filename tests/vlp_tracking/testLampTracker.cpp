@@ -313,3 +313,35 @@ TEST(LampTracker, PictureOfAnotherSizeIsRefusedAndTheNextGoesOn)
   EXPECT_EQ(all.size(), 3u);
   EXPECT_EQ(tracker.tracks(), 3u);
 }
+
+// Frames at a steady rate hide the same edges of few stripes between short exposures, again and again.
+TEST(LampTracker, LampThatSingleFramesKnowIsNotLostForWhatAllOfThemHide)
+{
+  int alone = 0, tracked = 0;
+  for (const double rate : {15.0, 14.7}) {
+    for (const double frequency : {2600.0, 3500.0}) {
+      for (const double share : {0.2, 0.3}) {
+        Scene scene;
+        scene.radius = 2.0 / (frequency * 40e-6); // four stripes
+        scene.exposure = share * 40e-6;
+        scene.rate = rate;
+        const std::vector<Lamp> lamps = {{120.3, 100.6, frequency}, {280.4, 210.8, 4400}};
+        vpLampTracker tracker = scene.tracker();
+        vpLedDetector single(scene.rig(), Scene::map());
+        for (int k = 0; k < 20; ++k) {
+          const vpVlpFrame frame = scene.frame(k, lamps);
+          const vpLampObservation *seen = scene.seen(tracker.track(frame), lamps[0]);
+          single.detect(frame.I);
+          const vpLampObservation *once = scene.seen(single.observations(), lamps[0]);
+          const std::string id = idOf(frequency);
+          alone += once != nullptr && once->id == id;
+          tracked += seen != nullptr && seen->id == id;
+        }
+      }
+    }
+  }
+  EXPECT_GT(alone, 100);
+  EXPECT_GE(tracked, alone);
+  RecordProperty("alone", alone);
+  RecordProperty("tracked", tracked);
+}

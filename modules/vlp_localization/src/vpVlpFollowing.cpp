@@ -48,7 +48,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   const std::vector<size_t> &whole = unchanged(location, usable);
   // Most lamps have changed where the robot is elsewhere; and a filter that is too young is no help.
   const bool changed = 2 * whole.size() < usable.size(),
-             unknown = m_followed < young && vague(location.timestamp);
+             unknown = (m_followed < young || std::exchange(m_refused, false)) && vague(location.timestamp);
   if ((changed && beginAnew(location, all, usable, true)) ||
       (unknown && beginAnew(location, location.observations, whole, false))) {
     return;
@@ -84,9 +84,11 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     filter.stop();
     location.fix = alone;
     location.observations = apart;
-  } else if (alone.valid && few) {
+  } else if (few && (alone.valid || (fitting == 0 && misplacedKnown(location, whole)))) {
+    m_refused = true;
     location.fix = vpVlpFix();
-    location.fix.refusal = "the lamps agree with each other, and not with the robot's motion";
+    location.fix.refusal = alone.valid ? "the lamps agree with each other, and not with the robot's motion"
+                                       : "the lamp does not agree with the robot's motion";
   }
 }
 
