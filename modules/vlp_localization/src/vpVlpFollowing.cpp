@@ -53,10 +53,11 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
       (unknown && beginAnew(location, location.observations, whole, false))) {
     return;
   }
-  apart = changed ? all : location.observations;
+  const bool scarce = changed || (whole.size() < 2 && usable.size() > 1);
+  apart = scarce ? all : location.observations;
   const bool roused = correctRestless(location, whole);
   const bool contradictory = contradicts(location, whole, roused);
-  const std::vector<size_t> &blinking = changed ? usable : whole;
+  const std::vector<size_t> &blinking = scarce ? usable : whole;
   const size_t fitting = 2 * accepted(location);
   const bool few = fitting < blinking.size(),
              half = fitting == blinking.size() && (fitting > 2 || misplacedKnown(location, whole)),
@@ -67,7 +68,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   }
   const vpVlpFix alone = solve(apart, blinking);
   const bool elsewhere = alone.valid && !alone.ambiguous && asBefore(apart, alone);
-  if (changed && !elsewhere && !lost) {
+  const bool contradicted = fitting == 0 && misplacedKnown(location, whole);
+  if (scarce && !elsewhere && !lost && !contradicted) {
     return; // hidden in part, from wherever they are seen
   }
   m_disagreements = (few || fitting == 2 ? before : 0) + (alone.valid ? 1 : 0);
@@ -84,7 +86,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     filter.stop();
     location.fix = alone;
     location.observations = apart;
-  } else if (few && (alone.valid || (fitting == 0 && misplacedKnown(location, whole)))) {
+  } else if (few && (alone.valid || contradicted)) {
     m_refused = true;
     location.fix = vpVlpFix();
     location.fix.refusal = alone.valid ? "the lamps agree with each other, and not with the robot's motion"
