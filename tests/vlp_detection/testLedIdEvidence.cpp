@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_detection/vpLedIdEvidence.h>
@@ -84,6 +85,36 @@ TEST(LedIdEvidence, MeanAndSigmaAreThoseOfAllFrames)
   EXPECT_NEAR(evidence.features().frequency, (4 * 1000 + 1003) / 5., 1e-9);
   EXPECT_NEAR(evidence.features().frequencySigma, std::sqrt(1 / (1 + 0.25)), 1e-12);
   EXPECT_NEAR(evidence.features().duty, (0.5 + 4 * 0.52) / 5, 1e-12);
+}
+
+TEST(LedIdEvidence, WhatFramesHideAlikeDoesNotAverageOut)
+{
+  const double noise = 5, hidden = 25, truth = 3800; // Hz
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> normal;
+  const int tracks = 1000;
+  double shared = 0, independent = 0; // errors squared, in sigma
+  for (int track = 0; track < tracks; ++track) {
+    const double common = hidden * normal(generator);
+    vpLedIdEvidence same, each;
+    for (int frame = 0; frame < 30; ++frame) {
+      vpStripeFeatures seen = stripes(truth + common + noise * normal(generator), std::hypot(noise, hidden));
+      seen.frequencyNoise = noise;
+      seen.frequencyBound = seen.frequencySigma;
+      same.add(seen);
+      seen = stripes(truth + noise * normal(generator), noise);
+      seen.frequencyNoise = noise;
+      each.add(seen);
+    }
+    for (const auto &[evidence, sum] : {std::pair(&same, &shared), std::pair(&each, &independent)}) {
+      const vpStripeFeatures &all = evidence->features();
+      *sum += std::pow((all.frequency - truth) / all.frequencySigma, 2) / tracks;
+    }
+    EXPECT_NEAR(same.features().frequencyBound, hidden, 1);
+    EXPECT_NEAR(each.features().frequencySigma, noise / std::sqrt(30), 1e-9);
+  }
+  EXPECT_NEAR(shared, 1, 0.15); // 3 standard deviations of the mean of 1000 squares
+  EXPECT_NEAR(independent, 1, 0.15);
 }
 
 TEST(LedIdEvidence, AnotherLampBeginsAnew)

@@ -45,7 +45,9 @@ class Scene
 public:
   int width = 400, height = 320; // px
   bool columns = false;
-  double radius = 26; // px
+  double radius = 26;      // px
+  double exposure = 40e-6; // s
+  double rate = 0;         // frames a second of a camera whose clock is the lamps' own; 0: they share none
 
   explicit Scene(bool readAlongColumns = false) : columns(readAlongColumns)
   {
@@ -57,6 +59,7 @@ public:
   vpVlpRig rig() const
   {
     vpVlpRig rig = vpUpwardRig(static_cast<unsigned int>(width), static_cast<unsigned int>(height));
+    rig.shutter.exposure = exposure;
     rig.shutter.readout = columns ? vpRollingShutter::Readout::columns : vpRollingShutter::Readout::rows;
     return rig;
   }
@@ -76,14 +79,15 @@ public:
 
   vpLampTracker tracker() const { return vpLampTracker(rig(), map()); }
 
-  //! Lamps share no clock with the camera: their phase is another one in each frame.
+  //! Lamps that share no clock with the camera have another phase in each frame.
   vpVlpFrame frame(int k, const std::vector<Lamp> &lamps) const
   {
     vpLampPicture picture;
     picture.width = width;
     picture.height = height;
     picture.columns = columns;
-    picture.rowTime = picture.exposure = 40e-6;
+    picture.rowTime = 40e-6;
+    picture.exposure = exposure;
     picture.blur = 0.7;
     picture.seed = static_cast<unsigned int>(1 + k);
     for (const Lamp &lamp : lamps) {
@@ -91,7 +95,7 @@ public:
       painted.centre = columns ? Eigen::Vector2d(lamp.v, lamp.u) : Eigen::Vector2d(lamp.u, lamp.v);
       painted.a = painted.b = radius;
       painted.frequency = lamp.frequency;
-      painted.phase = 0.37 * k + 0.1 * lamp.frequency / 1000;
+      painted.phase = (rate > 0 ? k * lamp.frequency / rate : 0.37 * k) + 0.1 * lamp.frequency / 1000;
       if (lamp.frequency > 0) {
         painted.pwm(0.5);
       }

@@ -313,3 +313,31 @@ TEST(LampTracker, PictureOfAnotherSizeIsRefusedAndTheNextGoesOn)
   EXPECT_EQ(all.size(), 3u);
   EXPECT_EQ(tracker.tracks(), 3u);
 }
+
+// Frames at a steady rate hide the same edges of few stripes between short exposures, again and again.
+TEST(LampTracker, LampThatSingleFramesKnowIsNotLostForWhatAllOfThemHide)
+{
+  const int frames = 16;
+  for (double frequency = 2450; frequency < 4300; frequency += 150) {
+    Scene scene;
+    scene.radius = 1.85 / (frequency * 40e-6); // less than four stripes
+    scene.exposure = 10e-6;
+    scene.rate = 15;
+    vpLampMap map = Scene::map();
+    map.lamps[0].modulation.frequency = frequency;
+    map.lamps.resize(1);
+    const std::vector<Lamp> lamps = {{120.3, 100.6, frequency}};
+    vpLampTracker tracker(scene.rig(), map);
+    vpLedDetector single(scene.rig(), map);
+    int alone = 0, tracked = 0;
+    for (int k = 0; k < frames; ++k) {
+      const vpVlpFrame frame = scene.frame(k, lamps);
+      const vpLampObservation *seen = scene.seen(tracker.track(frame), lamps[0]);
+      single.detect(frame.I);
+      const vpLampObservation *once = scene.seen(single.observations(), lamps[0]);
+      alone += once != nullptr && once->id == map.lamps[0].id;
+      tracked += seen != nullptr && seen->id == map.lamps[0].id;
+    }
+    EXPECT_GE(tracked, alone) << frequency << " Hz";
+  }
+}

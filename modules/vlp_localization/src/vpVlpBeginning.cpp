@@ -26,6 +26,7 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   m_trust->forgetPlaces();
   m_trust->mapTolerance = mapTolerance;
   m_disagreements = m_contradictions = m_followed = 0;
+  m_refused = false;
   std::vector<size_t> members;
   for (size_t i = 0; i < location.observations.size(); ++i) {
     if (location.observations[i].accepted) {

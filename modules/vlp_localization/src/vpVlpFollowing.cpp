@@ -48,15 +48,16 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   const std::vector<size_t> &whole = unchanged(location, usable);
   // Most lamps have changed where the robot is elsewhere; and a filter that is too young is no help.
   const bool changed = 2 * whole.size() < usable.size(),
-             unknown = m_followed < young && vague(location.timestamp);
+             unknown = (m_followed < young || std::exchange(m_refused, false)) && vague(location.timestamp);
   if ((changed && beginAnew(location, all, usable, true)) ||
       (unknown && beginAnew(location, location.observations, whole, false))) {
     return;
   }
-  apart = changed ? all : location.observations;
+  const bool scarce = changed || (whole.size() < 2 && usable.size() > 1);
+  apart = scarce ? all : location.observations;
   const bool roused = correctRestless(location, whole);
   const bool contradictory = contradicts(location, whole, roused);
-  const std::vector<size_t> &blinking = changed ? usable : whole;
+  const std::vector<size_t> &blinking = scarce ? usable : whole;
   const size_t fitting = 2 * accepted(location);
   const bool few = fitting < blinking.size(),
              half = fitting == blinking.size() && (fitting > 2 || misplacedKnown(location, whole)),
@@ -67,7 +68,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   }
   const vpVlpFix alone = solve(apart, blinking);
   const bool elsewhere = alone.valid && !alone.ambiguous && asBefore(apart, alone);
-  if (changed && !elsewhere && !lost) {
+  const bool contradicted = fitting == 0 && misplacedKnown(location, whole);
+  if (scarce && !elsewhere && !lost && !contradicted) {
     return; // hidden in part, from wherever they are seen
   }
   m_disagreements = (few || fitting == 2 ? before : 0) + (alone.valid ? 1 : 0);
@@ -84,9 +86,11 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     filter.stop();
     location.fix = alone;
     location.observations = apart;
-  } else if (alone.valid && few) {
+  } else if (few && (alone.valid || contradicted)) {
+    m_refused = true;
     location.fix = vpVlpFix();
-    location.fix.refusal = "the lamps agree with each other, and not with the robot's motion";
+    location.fix.refusal = alone.valid ? "the lamps agree with each other, and not with the robot's motion"
+                                       : "the lamp does not agree with the robot's motion";
   }
 }
 

@@ -1,0 +1,214 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Frames far from what the filter expects: after a gap, of a robot that drives from the first one on, of one
+// that was carried; and frames that are wrong alike.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_localization/vpVlpLocalizer.h>
+
+#include "hungLamps.h"
+#include "lampDrive.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+using hungLamps::Path;
+using hungLamps::Place;
+
+const double period = 1.0 / 15; // s, of frames
+
+//! Two lamps, whose lines are read one after the other.
+struct Pair {
+  hungLamps::Camera camera = {480, 400, 400};
+  std::vector<hungLamps::Hung> lamps = {{"A", {-0.3, -0.45, 1.6}, 1800}, {"B", {0.4, 0.4, 1.6}, 2900}};
+
+  vpVlpLocalizer localizer() const { return vpVlpLocalizer(camera.rig(), hungLamps::mapOf(lamps)); }
+
+  vpVlpFrame frame(int k, const Path &path, bool dark = false) const
+  {
+    const double time = k * period;
+    return camera.frame(dark ? std::vector<hungLamps::Hung>() : lamps, time, path, std::fmod(37.7 * time, 1),
+                        static_cast<unsigned int>(k + 1));
+  }
+};
+
+//! x, y, z and yaw off by no more than so many of their standard deviations each.
+testing::AssertionResult isAt(const vpVlpFix &fix, const Place &place, double sigmas)
+{
+  const double yaw = std::atan2(fix.wMb[1][0], fix.wMb[0][0]);
+  const Eigen::Vector4d error(fix.wMb[0][3] - place.x, fix.wMb[1][3] - place.y, fix.wMb[2][3],
+                              std::remainder(yaw - place.yaw, 2 * M_PI)),
+      sigma = Eigen::Vector4d(fix.covariance(0, 0), fix.covariance(1, 1), fix.covariance(2, 2),
+                              fix.covariance(5, 5))
+                  .cwiseSqrt();
+  if ((error.cwiseAbs().array() > sigmas * sigma.array()).any()) {
+    return testing::AssertionFailure() << "off by " << error.transpose() << ", sigma " << sigma.transpose();
+  }
+  return testing::AssertionSuccess();
+}
+
+//! Stands, drives from one time to another, and stands.
+Path drives(double from, double until, double v, double w)
+{
+  return [=](double t) {
+    const double turned = w * (std::clamp(t, from, until) - from),
+                 way = std::abs(w) > 0 ? v / w : v * (std::clamp(t, from, until) - from);
+    return std::abs(w) > 0
+               ? Place{-0.05 + way * std::sin(turned), 0.03 + way * (1 - std::cos(turned)), turned}
+               : Place{-0.05 + way, 0.03, 0};
+  };
+}
+} // namespace
+
+TEST(FarFrames, RobotThatDroveInTheDarkIsFoundWithinItsSigmaAtOnce)
+{
+  const Pair pair;
+  const int before = 12, after = 8;
+  for (const int dark : {4, 7, 12}) {
+    for (const auto &[v, w] : {std::pair(0.2, 0.4), std::pair(0.1, -1.2), std::pair(0.0, 0.0)}) {
+      const Path path = drives((before - 1) * period, (before + dark - 0.5) * period, v, w);
+      vpVlpLocalizer localizer = pair.localizer();
+      for (int k = 0; k < before + dark + after; ++k) {
+        const bool hidden = k >= before && k < before + dark;
+        const vpVlpFix fix = localizer.process(pair.frame(k, path, hidden)).fix;
+        EXPECT_TRUE(fix.valid || hidden) << k << ", dark for " << dark << ": " << fix.refusal;
+        if (fix.valid && !hidden) {
+          EXPECT_TRUE(isAt(fix, path(k * period), 4)) << k << ", dark for " << dark;
+        }
+        if (k >= before + dark + 3) {
+          EXPECT_LT(std::sqrt(fix.covariance(0, 0)), 0.001) << k;
+        }
+      }
+    }
+  }
+}
+
+TEST(FarFrames, FirstFramesOfARobotThatDrivesAreWithinTheirSigma)
+{
+  const Pair pair;
+  for (const auto &[v, w] : {std::pair(0.2, 0.4), std::pair(-0.2, 0.8), std::pair(0.3, -1.5)}) {
+    const Path path = drives(-1, 9, v, w);
+    vpVlpLocalizer localizer = pair.localizer();
+    for (int k = 0; k < 6; ++k) {
+      const vpVlpFix fix = localizer.process(pair.frame(k, path)).fix;
+      ASSERT_TRUE(fix.valid) << k << ": " << fix.refusal;
+      EXPECT_TRUE(isAt(fix, path(k * period), 4)) << k << ", " << w;
+      if (k > 2) {
+        EXPECT_LT(std::sqrt(fix.covariance(0, 0)), 0.001) << k;
+      }
+    }
+  }
+}
+
+// One of the two lamps may fit a place where the robot is not.
+TEST(FarFrames, CarriedUnderTwoLampsItIsNeverFarFromWhereItSays)
+{
+  const Pair pair;
+  for (const Place &step : {Place{0.03, 0, 0}, Place{0, 0, 0.5}, Place{0.2, 0.1, 0.2}, Place{0, 0.1, -1}}) {
+    const Path path = [&step](double t) { return t < 9.5 * period ? Place{} : step; };
+    vpVlpLocalizer localizer = pair.localizer();
+    for (int k = 0; k < 20; ++k) {
+      const vpVlpFix fix = localizer.process(pair.frame(k, path)).fix;
+      EXPECT_TRUE(fix.valid || k == 10 || k == 11) << k << ": " << fix.refusal;
+      if (fix.valid) {
+        EXPECT_TRUE(isAt(fix, path(k * period), 4)) << k << ", " << step.x << " m, " << step.yaw;
+      }
+    }
+  }
+}
+
+// What is of second order counts as long as the velocity is not known.
+TEST(FarFrames, FrameLinearisedAboutItsOwnPathIsAsGoodAsItSays)
+{
+  using namespace lampDrive;
+  lampScene::ChiSquareMean about, straight;
+  for (unsigned int seed = 1; seed <= 200; ++seed) {
+    Random random(seed);
+    const Arc arc{
+        0.1, -0.1, random.uniform(-3, 3), random.normal(0.2), random.normal(0.2), random.normal(0.3)};
+    Doubt sharp;
+    sharp.raySigma = 5e-5;
+    Drive drive(
+        seed, [&arc](double t) { return arc.at(t); }, sharp);
+    drive.places.resize(2);
+    vpVlpFilter filter(drive.rig());
+    filter.startTurnRate = 0.3; // what is of second order in the first frame's motion is not to count
+    drive.start(filter);
+    filter.calm(0);
+    Drive first = drive;
+    first.frame(filter, 0);
+    filter.startAgain();
+    drive.frame(filter, 0);
+    filter.conclude();
+    const vpVlpFilter before = filter;
+    Drive twin = drive;
+    drive.frame(filter, period);
+    straight.add(lampScene::nees(filter.marked(), arc.at(period)));
+    vpVlpFilter again = filter;
+    for (int round = 0; round < 2; ++round) {
+      filter = before;
+      ASSERT_TRUE(filter.linearizeAbout(again));
+      Drive same = twin;
+      same.frame(filter, period);
+      filter.conclude();
+      again = filter;
+    }
+    about.add(lampScene::nees(again.marked(), arc.at(period)));
+  }
+  EXPECT_LT(about.mean(), 4 + 2.576 / 1.96 * about.halfWidth(4));
+  EXPECT_GT(straight.mean(), 2 * about.mean());
+  RecordProperty("about", std::to_string(about.mean()));
+  RecordProperty("straight", std::to_string(straight.mean()));
+}
+
+TEST(FarFrames, OdometrySaysThePathWellEnough)
+{
+  using namespace lampDrive;
+  const Arc arc;
+  Drive drive(1, [&arc](double t) { return arc.at(t); });
+  vpVlpFilter filter(drive.rig());
+  drive.start(filter);
+  for (double t = 0; t < 0.3; t += 0.02) {
+    filter.addOdometry({t, 0.2, 1});
+  }
+  drive.frame(filter, 0);
+  vpVlpFilter other = filter;
+  drive.frame(filter, 0.1);
+  const vpVlpFix before = other.now();
+  EXPECT_FALSE(other.linearizeAbout(filter));
+  EXPECT_EQ(lampScene::poseError(before.wMb, other.now().wMb).norm(), 0);
+  EXPECT_EQ((before.covariance - other.now().covariance).norm(), 0);
+}
+
+// Of a robot that stands stripes may hide the same in every frame: points are off alike, which no innovation
+// shows.
+TEST(FarFrames, PointsThatAreOffAlikeInEveryFrameDoNotAverageOut)
+{
+  using namespace lampDrive;
+  lampScene::ChiSquareMean mean;
+  for (unsigned int seed = 1; seed <= 100; ++seed) {
+    Drive drive(seed, [](double) { return lampScene::frame(0.1, -0.2, 0, 0, 0, 0.7); });
+    vpVlpFilter filter(drive.rig());
+    drive.start(filter);
+    const std::vector<vpLampSight> lamps = {drive.sight(0, 0), drive.sight(2, 0)};
+    for (int k = 0; k < 60; ++k) {
+      filter.mark(k * period);
+      for (const vpLampSight &lamp : lamps) {
+        filter.update(lamp);
+      }
+      filter.settle(0, 4);
+      filter.conclude();
+    }
+    mean.add(lampScene::nees(filter.now(), drive.truth(0)));
+  }
+  // Of four coordinates, each up to a quarter in variance that is taken as new in each frame.
+  EXPECT_LT(mean.mean(), (4 + 2.576 / 1.96 * mean.halfWidth(4)) / 0.75);
+  testing::Test::RecordProperty("nees", std::to_string(mean.mean()));
+}
