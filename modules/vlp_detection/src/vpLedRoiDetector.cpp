@@ -40,6 +40,8 @@ bool significant(const Group &group, double noise)
 
 const double margin = 0.08; // of lampness, by which children have to be better: between equals the larger one
 
+const double likeALamp = 0.5; // of lampness: parts of the ceiling have less
+
 //! Whether no children that higher levels may have will be chosen in its place: these have no more ends, and
 //! the number of ends bounds what any lampness can be.
 bool settled(const Group &group, double noise)
@@ -130,7 +132,7 @@ void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,
 bool onlyLampsBefore(const Group &around, const std::vector<Group> &tree,
                      const cv::Mat_<unsigned char> &lines, std::vector<int> &above)
 {
-  static const double farLarger = 2, likeALamp = 0.5;
+  static const double farLarger = 2;
   std::vector<int> lamps;
   bool any = false;
   for (int node : above) {
@@ -171,9 +173,10 @@ double bestBranch(const std::vector<Group> &tree, int node, const cv::Mat_<unsig
     }
   }
   const bool stands = significant(group, noise);
-  // A child that reaches beyond it shows what this one has lost to the ceiling.
-  const bool larger = std::any_of(above.begin(), above.end(), [&](int child) {
-    return (tree[child].roi.box | group.roi.box) != group.roi.box;
+  // A lamp that reaches beyond it shows what this one has lost to the ceiling.
+  const bool larger = std::any_of(above.begin(), above.end(), [&](int lamp) {
+    const vpLedRoi &roi = tree[lamp].roi;
+    return roi.lampness > likeALamp && (roi.box | group.roi.box) != group.roi.box;
   });
   bool better = weight > 0 && (!stands || sum / weight > group.roi.lampness + (larger ? -margin : margin));
   if (weight > 0 && !better && onlyLampsBefore(group, tree, lines, above)) {
