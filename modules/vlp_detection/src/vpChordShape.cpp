@@ -170,16 +170,6 @@ Points endsOf(const std::vector<vpLedChord> &chords, int first, int last)
   return points;
 }
 
-//! The longest dark gap between the chords, lines.
-int longestGap(const vpLedRoi &roi)
-{
-  int gap = 0;
-  for (size_t i = 1; i < roi.chords.size(); ++i) {
-    gap = std::max(gap, roi.chords[i].line - roi.chords[i - 1].line - 1);
-  }
-  return gap;
-}
-
 //! First and last line of the ellipse through the ends of the chords; of the region, where none fits.
 std::pair<double, double> ellipseLines(const std::vector<cv::Point2f> &points, const cv::Rect &box)
 {
@@ -303,16 +293,23 @@ vpChordShape::Score vpChordShape::score(const vpLedRoi &roi, const cv::Mat_<unsi
   return score;
 }
 
+int vpChordShape::longestGap(const vpLedRoi &roi)
+{
+  int gap = 0;
+  for (size_t i = 1; i < roi.chords.size(); ++i) {
+    gap = std::max(gap, roi.chords[i].line - roi.chords[i - 1].line - 1);
+  }
+  if (gap == 0 && 2 * roi.box.height < roi.box.width) {
+    gap = roi.box.height;
+  }
+  return gap;
+}
+
 bool vpChordShape::mayGoOn(const vpLedRoi &roi, const cv::Size &picture)
 {
   const int before = roi.box.y;
   const int after = picture.height - roi.box.br().y;
-  int gap = longestGap(roi);
-  if (gap == 0) {
-    // A single stripe: of a lamp that shines all the time, or, where it is flat, of one whose dark gap may be
-    // as long as itself.
-    gap = 2 * roi.box.height < roi.box.width ? roi.box.height : 0;
-  }
+  const int gap = longestGap(roi);
   static const int more = 1; // lines, half lit at either end of a gap
   if (gap == 0 || std::min(before, after) > gap + more) {
     return false;

@@ -56,6 +56,12 @@ double mostLampness(int ends);
 Score score(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double dark);
 
 /*!
+  The longest dark gap between the chords, lines. None in a single stripe, of a lamp that shines all the time,
+  or, where it is flat, of one whose dark gap may be as long as itself.
+*/
+int longestGap(const vpLedRoi &roi);
+
+/*!
   Whether the lamp may go on beyond the first or last line of the picture, though the region ends before it:
   by a dark gap no longer than the lamp shows elsewhere, and the chords there do not close.
 */

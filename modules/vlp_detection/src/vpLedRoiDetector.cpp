@@ -40,6 +40,8 @@ bool significant(const Group &group, double noise)
 
 const double margin = 0.08; // of lampness, by which children have to be better: between equals the larger one
 
+const double likeALamp = 0.5; // of lampness: parts of the ceiling have less
+
 //! Whether no children that higher levels may have will be chosen in its place: these have no more ends, and
 //! the number of ends bounds what any lampness can be.
 bool settled(const Group &group, double noise)
@@ -48,9 +50,22 @@ bool settled(const Group &group, double noise)
          significant(group, noise);
 }
 
+//! Of the most lines that follow each other.
+size_t longestStretch(const vpLedRoi &roi)
+{
+  size_t longest = 0, begun = 0;
+  for (size_t i = 0; i < roi.chords.size(); ++i) {
+    if (i > 0 && roi.chords[i].line != roi.chords[i - 1].line + 1) {
+      begun = i;
+    }
+    longest = std::max(longest, i - begun + 1);
+  }
+  return longest;
+}
+
 /*!
-  Whether a region without dark stripes, which may be a window or a part of the ceiling of any shape, holds
-  far brighter light than its own.
+  Whether a region that is mostly one stripe, and so may be a window or a part of the ceiling of any shape,
+  holds far brighter light than its own.
 */
 bool mayHoldLamps(const Group &group, const cv::Mat_<unsigned char> &lines, double dark)
 {
@@ -58,7 +73,7 @@ bool mayHoldLamps(const Group &group, const cv::Mat_<unsigned char> &lines, doub
   static const int smallest = 24; // px of a lamp's stripes; fewer are specks
   const vpLedRoi &roi = group.roi;
   const double grey = dark + farBrighter * group.edge.light;
-  if (static_cast<int>(roi.chords.size()) < roi.box.height || grey >= 255) {
+  if (grey >= 255 || 2 * longestStretch(roi) <= roi.chords.size()) {
     return false;
   }
   int pixels = 0;
@@ -75,6 +90,41 @@ bool mayHoldLamps(const Group &group, const cv::Mat_<unsigned char> &lines, doub
   return false;
 }
 
+//! Where the next stripe of a region may be, before its first or after its last.
+cv::Rect withNextStripes(const vpLedRoi &roi)
+{
+  static const int more = 1; // lines, half lit at either end of a gap
+  const int reach = vpChordShape::longestGap(roi) + more + 1;
+  return {roi.box.x, roi.box.y - reach, roi.box.width, roi.box.height + 2 * reach};
+}
+
+/*!
+  Says of a level's stripes in which of them nothing is looked for at higher levels: those of lamps beyond
+  doubt. One beside a region that is no lamp, as the ceiling, may lack stripes that run together with that.
+  \param begun The level's first node of the tree.
+*/
+void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,
+            const cv::Mat_<unsigned char> &lines, const vpBackground &dark)
+{
+  std::vector<char> good(tree.size() - begun);
+  for (size_t i = 0; i < good.size(); ++i) {
+    const Group &group = tree[begun + i];
+    good[i] = settled(group, dark.noise) && !mayHoldLamps(group, lines, dark.level);
+  }
+  for (size_t i = 0; i < good.size(); ++i) {
+    const Group &group = tree[begun + i];
+    const cv::Rect around = good[i] != 0 ? withNextStripes(group.roi) : cv::Rect();
+    const bool last =
+        good[i] != 0 &&
+        std::none_of(level.stripes.begin(), level.stripes.end(), [&](const vpLevelStripes::Stripe &other) {
+          return good[other.group - begun] == 0 && (around & other.box).area() > 0;
+        });
+    for (int s : group.set.stripes) {
+      level.stripes[s].settled = last;
+    }
+  }
+}
+
 /*!
   Takes out what is but a brighter part of \e around, unlike a lamp and without stripes of its own. \return
   Whether a lamp is left that hangs before it.
@@ -82,7 +132,7 @@ bool mayHoldLamps(const Group &group, const cv::Mat_<unsigned char> &lines, doub
 bool onlyLampsBefore(const Group &around, const std::vector<Group> &tree,
                      const cv::Mat_<unsigned char> &lines, std::vector<int> &above)
 {
-  static const double farLarger = 2, likeALamp = 0.5;
+  static const double farLarger = 2;
   std::vector<int> lamps;
   bool any = false;
   for (int node : above) {
@@ -123,7 +173,12 @@ double bestBranch(const std::vector<Group> &tree, int node, const cv::Mat_<unsig
     }
   }
   const bool stands = significant(group, noise);
-  bool better = weight > 0 && (!stands || sum / weight > group.roi.lampness + margin);
+  // A lamp that reaches beyond it shows what this one has lost to the ceiling.
+  const bool larger = std::any_of(above.begin(), above.end(), [&](int lamp) {
+    const vpLedRoi &roi = tree[lamp].roi;
+    return roi.lampness > likeALamp && (roi.box | group.roi.box) != group.roi.box;
+  });
+  bool better = weight > 0 && (!stands || sum / weight > group.roi.lampness + (larger ? -margin : margin));
   if (weight > 0 && !better && onlyLampsBefore(group, tree, lines, above)) {
     better = true;
     sum = weight = 0;
@@ -260,6 +315,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
       break; // nothing is brighter
     }
     const double grey = dark.level + contrast;
+    const auto begun = static_cast<int>(tree.size()); // the level's first node
     vpLevelStripes level(lines, grey, grey + peakFactor * dark.noiseAt(grey), first ? nullptr : &below);
     for (vpLevelStripes::Set &set : level.sets(maxDarkGap)) {
       for (Group &group : Group::lampsOf(level, std::move(set), lines, dark.level, workLeft)) {
@@ -268,10 +324,8 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
             *std::max_element(group.set.stripes.begin(), group.set.stripes.end(), [&](int a, int b) {
               return level.stripes[a].box.area() < level.stripes[b].box.area();
             });
-        const bool last = settled(group, dark.noise) && !mayHoldLamps(group, lines, dark.level);
         for (int s : group.set.stripes) {
           level.stripes[s].group = node;
-          level.stripes[s].settled = last;
         }
         if (!first) {
           group.parent = below.stripes[level.stripes[largest].parent].group;
@@ -280,6 +334,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
         tree.push_back(std::move(group));
       }
     }
+    settle(level, tree, begun, lines, dark);
     below = std::move(level);
   }
 

@@ -26,14 +26,15 @@ double swing(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
   return std::sqrt(std::max(0.0, squares / box.height - mean * mean));
 }
 
-//! Whether a region is lit all along most lines of a box.
-bool fills(const vpLedRoi &roi, const cv::Rect &box)
+//! Whether a region is lit on most lines of a box, not only to both sides of it, as a ring about its hole.
+bool fills(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
 {
   const auto first = std::lower_bound(roi.chords.begin(), roi.chords.end(), box.y,
                                       [](const vpLedChord &chord, int line) { return chord.line < line; });
   int filled = 0;
   for (auto chord = first; chord != roi.chords.end() && chord->line < box.br().y; ++chord) {
-    filled += chord->first <= box.x && chord->last >= box.br().x - 1;
+    filled += chord->first <= box.x && chord->last >= box.br().x - 1 &&
+              vpBrighter::sum(lines[chord->line] + box.x, box.width) > roi.level * box.width;
   }
   return 2 * filled > box.height;
 }
@@ -54,7 +55,7 @@ bool vpOwnStripes(const vpLedRoi &roi, const vpLedRoi &around, const cv::Mat_<un
   double beside = -1;
   for (const int x : {box.x - away - wide, box.br().x + away}) {
     const cv::Rect flank(x, middle.y, wide, middle.height);
-    if (x >= 0 && flank.br().x <= lines.cols && fills(around, flank)) {
+    if (x >= 0 && flank.br().x <= lines.cols && fills(around, lines, flank)) {
       beside = std::max(beside, swing(lines, flank));
     }
   }
