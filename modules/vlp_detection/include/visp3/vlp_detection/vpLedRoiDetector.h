@@ -55,8 +55,10 @@ struct VISP_EXPORT vpLedRoi {
   make better lamps. Groups of neighbouring levels nest into a tree. From the tree come the regions whose
   light falls off at their ends by more than noise would, and whose chords look most like one whole lamp:
   convex, on an ellipse or a quadrilateral, with a sharp edge. So a dim lamp beside a bright one and lamps
-  joined by their halos all get the level that suits them. Crumbs of a halo and pieces of a larger choice are
-  left out at the end.
+  joined by their halos all get the level that suits them. The ceiling is such a region too, where it is
+  brighter than the darkest part of the picture, and may have the shape of a lamp; it does not blink with the
+  lamps before it, which are chosen then. Crumbs of a halo and pieces of a larger choice are left out at the
+  end.
 */
 class VISP_EXPORT vpLedRoiDetector
 {
