@@ -82,6 +82,7 @@ void vpVlpFilter::mark(double time)
   m_moved = m_movable = 0;
   m_information.setZero();
   m_sights = 0;
+  m_imageSpeed = 0;
   advance(time);
   m_markTime = m_time;
   m_x.segment<6>(mark0) = m_x.head<6>();
@@ -216,6 +217,9 @@ void vpVlpFilter::update(const vpLampSight &lamp)
     }
     m_information += byPose * lamp.covariance.inverse() * byPose.transpose();
     ++m_sights;
+    m_imageSpeed =
+        std::max(m_imageSpeed, m_rig.camera.get_px() * (m_x.segment<2>(vx).norm() / predicted.depth +
+                                                        std::abs(m_x(w)) * predicted.ray.norm()));
     measure<2>(predicted.H, seen.ray, m_noise * lamp.covariance);
   }
 }

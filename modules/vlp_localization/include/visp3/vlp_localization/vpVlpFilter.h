@@ -161,9 +161,10 @@ public:
   */
   bool linearizeAbout(const vpVlpFilter &corrected);
   /*!
-    The lamps of a frame are through: from here on about the estimate again. What the lamps' points are stated
-    to be off by and innovations do not show is alike in all frames, as where stripes hide the same of an
-    outline in each: no averaging takes it away, and poses have it in their covariance.
+    The lamps of a frame are through: from here on about the estimate again. Of a robot that stands, what the
+    lamps' points are stated to be off by and innovations do not show may be alike in all frames, as where
+    stripes hide the same of an outline in each: no averaging takes it away, and poses have it in their
+    covariance.
   */
   void conclude();
 
@@ -286,6 +287,7 @@ private:
   int m_weighed = 0;                  // points that it rests on
   Eigen::Matrix4d m_information = Eigen::Matrix4d::Zero(); // of x, y, z and yaw, by the lamps since the mark
   int m_sights = 0;                                        // lamps since the mark
+  double m_imageSpeed = 0;                                 // px/s, of the fastest of them
   Eigen::Matrix4d m_common =
       Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
   double m_unrest = 1;         // share of the random accelerations
