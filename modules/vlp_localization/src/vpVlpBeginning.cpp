@@ -25,14 +25,9 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   bool moving = startAt(location);
   m_trust->forgetPlaces();
   m_trust->mapTolerance = mapTolerance;
-  m_disagreements = m_contradictions = m_followed = 0;
+  m_disagreements = m_followed = 0; // what contradicts the claims of camera and map does so still
   m_refused = false;
-  std::vector<size_t> members;
-  for (size_t i = 0; i < location.observations.size(); ++i) {
-    if (location.observations[i].accepted) {
-      members.push_back(i);
-    }
-  }
+  const std::vector<size_t> members = membersOf(location);
   if (first && strain(location, members) > mostStrain) { // later it may be a robot that starts or stops
     filter.doubtClaims();
     moving = startAt(location);
@@ -49,6 +44,18 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
     location.fix.wMc = fine.fix.wMc;
     location.fix.covariance = fine.fix.covariance;
   }
+}
+
+//! Observations that the location's pose rests on.
+std::vector<size_t> vpVlpLocalizer::membersOf(const vpVlpLocation &location)
+{
+  std::vector<size_t> members;
+  for (size_t i = 0; i < location.observations.size(); ++i) {
+    if (location.observations[i].accepted) {
+      members.push_back(i);
+    }
+  }
+  return members;
 }
 
 /*!

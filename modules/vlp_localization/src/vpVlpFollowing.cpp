@@ -55,15 +55,16 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   }
   const bool scarce = changed || (whole.size() < 2 && usable.size() > 1);
   apart = scarce ? all : location.observations;
-  const bool roused = correctRestless(location, whole);
-  const bool contradictory = contradicts(location, whole, roused);
+  const Motion motion = correctRestless(location, whole);
+  const bool contradictory = contradicts(location, whole, motion != Motion::asBefore);
   const std::vector<size_t> &blinking = scarce ? usable : whole;
   const size_t fitting = 2 * accepted(location);
   const bool few = fitting < blinking.size(),
              half = fitting == blinking.size() && (fitting > 2 || misplacedKnown(location, whole)),
-             lost = filter.state(location.fix) == vpVlpFilter::State::lost;
+             lost = filter.state(location.fix) == vpVlpFilter::State::lost,
+             inexplicable = motion == Motion::inexplicable;
   const int before = std::exchange(m_disagreements, 0);
-  if (!few && !half && !lost && !contradictory) {
+  if (!few && !half && !lost && !contradictory && !inexplicable) {
     return;
   }
   const vpVlpFix alone = solve(apart, blinking);
@@ -78,6 +79,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
                     (alone.degreesOfFreedom > 0 && alone.lamps.size() > accepted(location)))) {
     if (contradictory) {
       filter.doubtClaims();
+      m_contradictions = 0;
     }
     location.observations = apart;
     location.fix = alone;
@@ -91,6 +93,12 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     location.fix = vpVlpFix();
     location.fix.refusal = alone.valid ? "the lamps agree with each other, and not with the robot's motion"
                                        : "the lamp does not agree with the robot's motion";
+  } else if (inexplicable && elsewhere) { // by this frame alone, and the filter does not learn from it
+    filter = m_scratch->before;
+    filter.mark(location.timestamp);
+    location.observations = apart;
+    location.fix = alone;
+    addMotionDoubt(location, membersOf(location));
   }
 }
 
@@ -105,10 +113,11 @@ bool vpVlpLocalizer::misplacedKnown(const vpVlpLocation &location, const std::ve
 
 /*!
   Corrects by the lamps of a frame: as if the robot went on as before; where that is beyond chance, as if it
-  may start, stop or turn; where few lamps fit even so, as if its velocity were anybody's guess. \return
-  Whether lamps were seen that did not fit a robot that goes on as before.
+  may start, stop or turn; where few lamps fit even so, as if its velocity were anybody's guess. \return What
+  the lamps fit.
 */
-bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole)
+vpVlpLocalizer::Motion vpVlpLocalizer::correctRestless(vpVlpLocation &location,
+                                                       const std::vector<size_t> &whole)
 {
   Scratch &scratch = *m_scratch;
   scratch.before = filter;
@@ -133,11 +142,11 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
     }
   };
   auto halfOrLess = [&] { return whole.size() > 1 && 2 * accepted(location) <= whole.size(); };
-  bool roused = false;
+  Motion motion = Motion::asBefore;
   attempt();
   if (accepted(location) == 0 || halfOrLess() ||
       !filter.settle(location.fix.chiSquare, location.fix.degreesOfFreedom)) {
-    roused = accepted(location) > 0;
+    motion = Motion::restless;
     scratch.before.rouse();
     again();
     attempt();
@@ -153,8 +162,9 @@ bool vpVlpLocalizer::correctRestless(vpVlpLocation &location, const std::vector<
   }
   if (surprises()) { // nothing that a robot does: by Birge's ratio
     location.fix.covariance *= location.fix.chiSquare / location.fix.degreesOfFreedom;
+    return Motion::inexplicable;
   }
-  return roused;
+  return motion;
 }
 
 //! Whether lamps are so far from where the filter expected them that their rays are not linear in it.

@@ -97,13 +97,15 @@ private:
   bool beginAnew(vpVlpLocation &location, std::vector<vpLampObservation> observations,
                  const std::vector<size_t> &usable, bool proven);
   bool misplacedKnown(const vpVlpLocation &location, const std::vector<size_t> &which) const;
-  bool correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
+  enum class Motion { asBefore, restless, inexplicable }; // that the lamps of a frame show
+  Motion correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
   void correct(vpVlpLocation &location, const std::vector<size_t> &usable);
   bool bends(const vpVlpLocation &location) const;
   double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
   bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused);
   const std::vector<size_t> &inTime(const vpVlpLocation &location, const std::vector<size_t> &which) const;
   void begin(vpVlpLocation &location);
+  static std::vector<size_t> membersOf(const vpVlpLocation &location);
   void addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const;
   bool startAt(const vpVlpLocation &location);
   bool inOrder(double time);
