@@ -316,56 +316,6 @@ vpNormalEquations vpBundleProblem::equations()
   return vpNormalEquations(*m_problem, poses, rest, m_blocks);
 }
 
-std::vector<size_t> vpBundleProblem::rowsOf(Row kind) const
-{
-  std::vector<size_t> rows;
-  for (size_t i = 0; i < m_rows.size(); ++i) {
-    if (m_rows[i] == kind) {
-      rows.push_back(i);
-    }
-  }
-  return rows;
-}
-
-bool vpBundleProblem::weigh()
-{
-  bool settled = true;
-  const vpNormalEquations equations = this->equations();
-  static const double lowest = 1e-3, highest = 1e3; // of a stated sigma: observations without any noise
-  const auto weighOne = [&](Row kind, double &weight, double most) {
-    const std::vector<size_t> rows = rowsOf(kind);
-    if (rows.empty()) {
-      return;
-    }
-    const double redundancy = equations.redundancy(rows);
-    static const double least = 5; // fewer say little of their own errors
-    if (redundancy < least) {
-      return;
-    }
-    double squares = 0;
-    for (const size_t row : rows) {
-      squares += equations.residuals()[row] * equations.residuals()[row];
-    }
-    const double before = weight;
-    weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12)), lowest, most);
-    static const double nearly = 0.03; // a share
-    settled = settled && std::abs(std::log(weight / before)) < nearly;
-  };
-  weighOne(Row::image, m_imageWeight, highest);
-  weighOne(Row::along, m_stepWeight(0), highest);
-  if (m_rolls) {
-    weighOne(Row::sideways, m_stepWeight(1), 1);
-  } else {
-    m_stepWeight(1) = 1;
-    m_rolls = true;
-    settled = false;
-  }
-  weighOne(Row::turn, m_stepWeight(2), highest);
-  weighOne(Row::slip, m_slipWeight, highest);
-  weighOne(Row::rates, m_ratesWeight, highest);
-  return settled;
-}
-
 size_t vpBundleProblem::dropOutliers()
 {
   size_t dropped = 0;

@@ -5,6 +5,7 @@
 #ifndef vpBundleProblem_h
 #define vpBundleProblem_h
 
+#include <array>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -91,8 +92,9 @@ private:
   //! Along, sideways, turn. A base that can hardly go sideways comes to no end from a start that is far off:
   //! at first it may.
   Eigen::Vector3d m_stepWeight = Eigen::Vector3d(1, 0.02, 1);
-  bool m_rolls = false;     // it may no more
-  bool m_converged = false; // to a minimum, the last time
+  bool m_rolls = false;                // it may no more
+  std::array<double, 6> m_lastSteps{}; // of each kind's logarithm of the weight; 0: none to go by
+  bool m_converged = false;            // to a minimum, the last time
 
   std::unique_ptr<ceres::Problem> m_problem;
   std::vector<ceres::ResidualBlockId> m_blocks;

@@ -25,7 +25,7 @@ vpBundleResult vpLampBundle::solve(const std::vector<vpLampRun> &runs, const vpV
     return result;
   }
   vpBundleProblem problem(*this, runs, rig, map, start);
-  static const int rounds = 8; // in which the weights settle
+  static const int rounds = 12; // in which the weights settle
   bool settled = false;
   for (int round = 0; round < rounds && !settled; ++round) {
     if (!problem.solve()) {
