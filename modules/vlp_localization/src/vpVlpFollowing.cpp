@@ -79,7 +79,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
                     (alone.degreesOfFreedom > 0 && alone.lamps.size() > accepted(location)))) {
     if (contradictory) {
       filter.doubtClaims();
-      m_contradictions = 0;
+      m_contradictions = m_unresting = 0;
     }
     location.observations = apart;
     location.fix = alone;
@@ -224,7 +224,11 @@ bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vecto
   const bool now = usable.size() > 2 && (roused || 2 * static_cast<size_t>(apart) >= usable.size() ||
                                          (!calm && strain(location, usable) > mostStrain));
   m_contradictions = now ? m_contradictions + 1 : std::max(0, m_contradictions - 1);
-  return m_contradictions >= often;
+  static const double unresting = 0.2; // share of the random accelerations
+  static const int forGood = 24;       // frames
+  m_unresting =
+      usable.size() > 2 && filter.unrest() > unresting ? m_unresting + 1 : std::max(0, m_unresting - 2);
+  return m_contradictions >= often || m_unresting >= forGood;
 }
 
 //! Predicts to the frame and lets each lamp correct at the time of its line.
