@@ -144,6 +144,7 @@ private:
                    std::to_string(frames) + (total == 0 ? "" : " of " + std::to_string(total) + " frames"));
     }
     m_summary.log();
+    remarkOnClaims();
     if (const std::string remark = m_source->remark();
         !m_options.frames.camera.uri.empty() && !remark.empty()) {
       spdlog::warn(vpOneLine(remark)); // what became of the frames is known by now
@@ -153,6 +154,20 @@ private:
                    left == 1 ? "1 position is" : std::to_string(left) + " positions are");
     }
     return m_summary.positions() > 0 ? vpExitCode::done : vpExitCode::nothingFound;
+  }
+
+  //! Whoever states no doubt of map and mount reads standard deviations that have none in them.
+  void remarkOnClaims() const
+  {
+    const bool mapDoubted = std::any_of(m_map.lamps.begin(), m_map.lamps.end(),
+                                        [](const vpLamp &lamp) { return lamp.positionSigma > 0; });
+    if (m_summary.positions() > 0 && !mapDoubted && m_rig.rotationSigma.isZero(0) &&
+        m_rig.translationSigma.isZero(0)) {
+      spdlog::info(
+          "{} and {} state no position_sigma_m, rotation_sigma_deg or translation_sigma_m: positions "
+          "are told as certain as where lamps and camera are known exactly",
+          vpOneLine(m_options.lampsFile), vpOneLine(m_options.rigFile));
+    }
   }
 
   bool clicked() { return m_outputs.window() != nullptr && m_outputs.window()->clicked(); }

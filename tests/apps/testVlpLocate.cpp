@@ -238,6 +238,24 @@ TEST(VlpLocate, LampThatTheMapDoesNotKnowIsSeenAndDoesNotCount)
   EXPECT_EQ(unknown, 1);
 }
 
+TEST(VlpLocate, SaysWhereNothingStatesADoubt)
+{
+  const vpTemporaryFolder folder;
+  const auto rig = vpLocateScene::writeRig(folder);
+  const std::string file = folder.write("a.png", encoded(".png", vpLocateScene::picture()));
+  const std::string remark = "state no position_sigma_m";
+  for (const bool stated : {false, true}) {
+    if (stated) {
+      std::string lamps = folder.read("lamps.yaml");
+      lamps.replace(lamps.find("id:"), 3, "position_sigma_m: 0.002, id:");
+      folder.write("lamps.yaml", lamps);
+    }
+    vpProcess locate("vlp-locate", with(rig, {"--image", file}));
+    EXPECT_EQ(locate.wait(), 0) << locate.err();
+    EXPECT_EQ(locate.err().find(remark) == std::string::npos, stated) << locate.err();
+  }
+}
+
 TEST(VlpLocate, TwoLampsAtTwoHeightsCanBeAmbiguous)
 {
   const vpTemporaryFolder folder;
