@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
@@ -191,6 +192,18 @@ std::string textOf(const vpCameraEstimate &found, const Seen &seen)
 void write(const Options &options, const vpCameraEstimate &found, const Seen &seen, const std::string &text)
 {
   const vpCalibrationFolder folder(options.out);
+  // What may be refused comes first.
+  if (options.calibration.model == Model::opencv) {
+    if (std::ifstream(folder / "camera.xml")) {
+      throw vpException(vpException::ioError,
+                        (folder / "camera.xml") +
+                            ": of another calibration, which would stay beside this one; "
+                            "expected another folder as --out");
+    }
+    spdlog::warn("no camera.xml: ViSP has no camera of OpenCV's model; --model visp has one");
+  } else {
+    vpCameraXml{options.name, found.camera, seen.width, seen.height}.save(folder / "camera.xml");
+  }
   std::vector<vpDrawnResidual> drawn;
   for (size_t i = 0; i < found.views.size(); ++i) {
     for (size_t k = 0; k < found.views[i].points.size(); ++k) {
@@ -203,11 +216,6 @@ void write(const Options &options, const vpCameraEstimate &found, const Seen &se
   folder.write("report.txt", text);
   folder.write("camera_info.yaml",
                vpCameraInfoYaml(found, options.calibration.model, options.name, seen.width, seen.height));
-  if (options.calibration.model == Model::opencv) {
-    spdlog::warn("no camera.xml: ViSP has no camera of OpenCV's model; --model visp has one");
-  } else {
-    vpCameraXml{options.name, found.camera, seen.width, seen.height}.save(folder / "camera.xml");
-  }
 }
 } // namespace
 

@@ -10,11 +10,13 @@
 #include <system_error>
 
 #include <opencv2/imgproc.hpp>
+#include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpAtomicFile.h>
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpPoseText.h>
 
+#include "common/vpProgram.h"
 #include "common/vpTextBlock.h"
 
 BEGIN_VISP_NAMESPACE
@@ -114,6 +116,23 @@ vpReportTable vpRigTable(const vpBundleResult &result, const vpRigVector &priors
   table.note =
       "roll, pitch, yaw: the value as in rig.yaml, about the fixed axes; the step about x, y, z of the base.";
   return table;
+}
+
+void vpWarnOfDoubt(const vpBundleResult &result, const vpLampMap &map, const std::vector<size_t> &held)
+{
+  if (result.mapDoubt == 0) {
+    return;
+  }
+  const auto offset = [&](size_t lamp) {
+    return (result.map.lamps[lamp].position - map.lamps[lamp].position).norm();
+  };
+  const size_t farthest =
+      *std::max_element(held.begin(), held.end(), [&](size_t a, size_t b) { return offset(a) < offset(b); });
+  spdlog::warn(
+      "lamps that hang exactly where position_m has them do not explain the pictures: each was taken "
+      "for {:.1f} mm uncertain; {} is farthest off, by {:.1f} mm. Measure again, or give a "
+      "position_sigma_m",
+      1000 * result.mapDoubt, vpOneLine(map.lamps[farthest].id), 1000 * offset(farthest));
 }
 
 std::string vpCovarianceCsv(const vpBundleResult &result)

@@ -69,7 +69,7 @@ Exit code: 0 done; 2 bad usage or bad input; 3 no position in any frame.
 std::string absolute(const std::string &name)
 {
   std::error_code ignored;
-  const fs::path path = fs::weakly_canonical(name, ignored);
+  const fs::path path = fs::weakly_canonical(fs::absolute(name, ignored), ignored);
   return path.empty() ? name : path.string();
 }
 

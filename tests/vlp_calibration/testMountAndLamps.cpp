@@ -2,7 +2,9 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -205,6 +207,68 @@ TEST(MountCalibration, RefusesTooFewPicturesAndSwappedLamps)
   const vpBundleResult few = vpMountCalibration().solve({run}, rig(), world.map);
   EXPECT_FALSE(few.valid);
   EXPECT_NE(few.refusal.find("too few pictures"), std::string::npos) << few.refusal;
+}
+
+//! One lamp hangs 5 mm elsewhere than a map that claims to be exact: what is found of the rig is as
+//! uncertain.
+TEST(MountCalibration, MapThatDoesNotExplainThePicturesIsDoubted)
+{
+  const World world = worldOf(usualStep());
+  const vpLampRun run = drive(world, spin() + square(), 3);
+  EXPECT_EQ(vpMountCalibration().solve({run}, rig(), world.map).mapDoubt, 0);
+  for (const Eigen::Vector3d &off : {Eigen::Vector3d(0.005, 0, 0), Eigen::Vector3d(0, 0, 0.005)}) {
+    vpLampMap claimed = world.map;
+    claimed.lamps[1].position += off;
+    vpMountCalibration calibration;
+    calibration.bundle.rigSigma(at(vpRigParameter::focal)) = 0.01; // told apart from z by heights alone
+    const vpBundleResult found = calibration.solve({run}, rig(), claimed);
+    ASSERT_TRUE(found.valid) << found.refusal;
+    EXPECT_GT(found.mapDoubt, 0.0005);
+    EXPECT_LT(found.mapDoubt, 0.01);
+    const vpRigVector error = found.step - usualStep();
+    for (int i = 0; i < vpRigParameterCount; ++i) {
+      EXPECT_LT(std::abs(error(i)), 4 * std::sqrt(found.rigCovariance(i, i))) << i << ", " << off.transpose();
+    }
+  }
+}
+
+TEST(MountCalibration, RefusesOdometryOfAnotherClockUnitOrSign)
+{
+  const World world = worldOf(usualStep());
+  const vpLampRun run = drive(world, square(), 3);
+  const auto refusalOf = [&](const std::function<void(vpOdometry &)> &change) {
+    vpLampRun changed = run;
+    for (vpOdometry &sample : changed.odometry) {
+      change(sample);
+    }
+    const vpBundleResult found = vpMountCalibration().solve({changed}, rig(), world.map);
+    EXPECT_FALSE(found.valid);
+    return found.refusal;
+  };
+  EXPECT_EQ(refusalOf([](vpOdometry &sample) {
+              sample.timestamp += 0.5;
+            }).rfind("the odometry's time stamps are about 0.5 s too late", 0),
+            0u);
+  EXPECT_EQ(refusalOf([](vpOdometry &sample) { sample.w = -sample.w; }).rfind("the odometry's turn rate", 0),
+            0u);
+  EXPECT_EQ(refusalOf([](vpOdometry &sample) { sample.v *= 1000; }).rfind("the odometry's speed", 0), 0u);
+}
+
+TEST(MountCalibration, AGapInTheOdometryTellsNothing)
+{
+  const World world = worldOf(usualStep());
+  vpLampRun run = drive(world, spin() + square(), 3);
+  const double from = run.odometry.front().timestamp + 5, until = from + 4;
+  run.odometry.erase(std::remove_if(run.odometry.begin(), run.odometry.end(),
+                                    [&](const vpOdometry &sample) {
+                                      return sample.timestamp > from && sample.timestamp < until;
+                                    }),
+                     run.odometry.end());
+  const vpBundleResult found = vpMountCalibration().solve({run}, rig(), world.map);
+  expectNear(found, usualStep());
+  for (int i = 0; i < vpRigParameterCount; ++i) {
+    EXPECT_LT(std::abs(found.step(i) - usualStep()(i)), 5 * std::sqrt(found.rigCovariance(i, i))) << i;
+  }
 }
 
 //! Reflections that carry a lamp's own stripes: one image in fifty, up to 60 px off.

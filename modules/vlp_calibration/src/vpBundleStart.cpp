@@ -150,7 +150,7 @@ void vpBundleStart::placeByWheels(const std::vector<vpLampRun> &runs)
     if (run.odometry.empty() || views[i].run != 0) {
       continue; // nothing ties a second run to the first one before the lamps have their places
     }
-    if (const auto step = paths[0].step(run.odometry.front().timestamp, views[i].time)) {
+    if (const auto step = paths[0].roughStep(run.odometry.front().timestamp, views[i].time)) {
       views[i].start = vpAfter(vpPlanarPose::Zero(), *step);
       m_placed[i] = true;
     }
@@ -165,7 +165,7 @@ void vpBundleStart::followWheels(const std::vector<vpLampRun> &runs)
         runs[views[to].run].motion == Motion::known) {
       return;
     }
-    if (const auto step = paths[views[to].run].step(views[from].time, views[to].time)) {
+    if (const auto step = paths[views[to].run].roughStep(views[from].time, views[to].time)) {
       views[to].start = vpAfter(views[from].start, *step);
       m_placed[to] = true;
     }
@@ -181,7 +181,7 @@ void vpBundleStart::followWheels(const std::vector<vpLampRun> &runs)
     if (!m_placed[i] || !m_placed[i - 1] || views[i].run != views[i - 1].run) {
       continue;
     }
-    const auto step = paths[views[i].run].step(views[i - 1].time, views[i].time);
+    const auto step = paths[views[i].run].roughStep(views[i - 1].time, views[i].time);
     views[i].start(2) = nearestTurn(views[i].start(2), views[i - 1].start(2) + (step ? step->turn : 0));
   }
 }
@@ -217,7 +217,7 @@ void vpBundleStart::turnHeading(const vpLampBundle &bundle, const std::vector<vp
       last = i;
       continue;
     }
-    const auto step = paths[views[i].run].step(views[last].time, views[i].time);
+    const auto step = paths[views[i].run].roughStep(views[last].time, views[i].time);
     const Eigen::Vector2d way = (views[i].start - views[last].start).head<2>();
     static const double least = 0.02; // m: shorter ways say little
     if (!step || way.norm() < least) {

@@ -5,6 +5,7 @@
 #include <visp3/vlp_calibration/vpCameraCalibration.h>
 
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpYamlNode.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -33,7 +34,7 @@ std::string vpCameraInfoYaml(const vpCameraEstimate &estimate, vpCameraCalibrati
            "\n  data: [" + row(values) + "]\n";
   };
   return "image_width: " + std::to_string(width) + "\nimage_height: " + std::to_string(height) +
-         "\ncamera_name: " + name + "\n" +
+         "\ncamera_name: " + vpYamlNode::quoted(name) + "\n" +
          matrix("camera_matrix", 3, 3, {p(0), 0, p(2), 0, p(1), p(3), 0, 0, 1}) +
          "distortion_model: " + (model == Model::kannalaBrandt ? "equidistant" : "plumb_bob") + "\n" +
          matrix("distortion_coefficients", 1, static_cast<int>(distortion.size()), distortion) +

@@ -12,6 +12,7 @@
 #include <Eigen/LU>
 #include <visp3/core/vpException.h>
 
+#include "vpDoubtedMap.h"
 #include "vpRunChecks.h"
 
 BEGIN_VISP_NAMESPACE
@@ -37,8 +38,7 @@ double offsetOf(const std::vector<vpSurveyedLamp> &lamps)
 }
 } // namespace
 
-vpBundleResult vpLampSurvey::adjusted(const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
-                                      const vpLampMap &map) const
+vpLampBundle vpLampSurvey::bundleOf(const vpLampMap &map) const
 {
   vpLampBundle own = bundle;
   own.distance = distance;
@@ -46,7 +46,7 @@ vpBundleResult vpLampSurvey::adjusted(const std::vector<vpLampRun> &runs, const 
   for (const size_t lamp : measured) {
     own.lampSigma.at(lamp) = 0;
   }
-  return own.solve(runs, rig, map);
+  return own;
 }
 
 std::vector<vpSurveyedLamp> vpLampSurvey::heldAgainst(const vpLampMap &map,
@@ -90,7 +90,7 @@ std::string vpLampSurvey::swappedLamps(const std::vector<vpLampRun> &runs, const
   }
   vpLampMap exchanged = map;
   std::swap(exchanged.lamps[measured[0]].position, exchanged.lamps[measured[1]].position);
-  const vpBundleResult other = adjusted(vpThinned(runs, 200), rig, exchanged);
+  const vpBundleResult other = bundleOf(exchanged).solve(vpThinned(runs, 200), rig, exchanged);
   static const double better = 0.3;
   if (!other.valid || !(offsetOf(heldAgainst(exchanged, other)) < better * offset)) {
     return "";
@@ -114,13 +114,18 @@ vpSurveyResult vpLampSurvey::solve(const std::vector<vpLampRun> &runs, const vpV
   if (!result.bundle.refusal.empty()) {
     return result;
   }
-  result.bundle = adjusted(runs, rig, map);
+  result.bundle = bundleOf(map).solve(runs, rig, map);
   if (!result.bundle.valid) {
     return result;
   }
   if (const std::string still = vpStandsStill(result.bundle.poses); !still.empty()) {
     result.bundle.valid = false;
     result.bundle.refusal = still;
+    return result;
+  }
+  if (const std::string other = vpOdometryMismatch(runs, result.bundle.poses); !other.empty()) {
+    result.bundle.valid = false;
+    result.bundle.refusal = other;
     return result;
   }
   result.lamps = heldAgainst(map, result.bundle);
@@ -130,6 +135,8 @@ vpSurveyResult vpLampSurvey::solve(const std::vector<vpLampRun> &runs, const vpV
     result.bundle.refusal = swapped;
     return result;
   }
+  result.bundle = vpUnderDoubtedMap(result.bundle, bundleOf(map), runs, rig, map);
+  result.lamps = heldAgainst(map, result.bundle);
   result.bundle.refusal = vpNoMinimum(result.bundle);
   if (!result.bundle.refusal.empty()) {
     result.bundle.valid = false;

@@ -9,6 +9,7 @@
 
 #include <visp3/vlp_core/vpNumberText.h>
 
+#include "vpDoubtedMap.h"
 #include "vpRunChecks.h"
 
 BEGIN_VISP_NAMESPACE
@@ -98,6 +99,12 @@ vpBundleResult vpMountCalibration::solve(const std::vector<vpLampRun> &runs, con
     result.refusal = still;
     return result;
   }
+  if (const std::string other = vpOdometryMismatch(runs, result.poses); !other.empty()) {
+    result.valid = false;
+    result.refusal = other;
+    return result;
+  }
+  result = vpUnderDoubtedMap(result, own, runs, rig, map);
   // What priors hold is told, not refused.
   std::vector<std::string> open;
   for (const std::string &names : result.unseparated) {

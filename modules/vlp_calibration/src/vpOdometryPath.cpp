@@ -166,7 +166,7 @@ vpOdometryPath::Point vpOdometryPath::at(double time) const
   return point;
 }
 
-std::optional<vpPlanarStep> vpOdometryPath::step(double from, double until) const
+std::optional<vpPlanarStep> vpOdometryPath::roughStep(double from, double until) const
 {
   static const double beyond = 0.05; // s
   if (m_points.size() < 2 || std::min(from, until) < m_points.front().time - 1e-9 ||
@@ -179,6 +179,22 @@ std::optional<vpPlanarStep> vpOdometryPath::step(double from, double until) cons
   return vpPlanarStep{
       until - from,      c * way.x() + s * way.y(),     -s * way.x() + c * way.y(),   b.pose(2) - a.pose(2),
       b.along - a.along, std::abs(b.length - a.length), std::abs(b.turned - a.turned)};
+}
+
+std::optional<vpPlanarStep> vpOdometryPath::step(double from, double until) const
+{
+  static const double gap = 0.5; // s: of a longer interval its mean says little
+  const auto later = [](double time, const Point &point) { return time < point.time; };
+  auto next = std::upper_bound(m_points.begin(), m_points.end(), std::min(from, until), later);
+  for (; next != m_points.end(); ++next) {
+    if (next != m_points.begin() && next->time - (next - 1)->time > gap) {
+      return std::nullopt;
+    }
+    if (next->time >= std::max(from, until)) {
+      break;
+    }
+  }
+  return roughStep(from, until);
 }
 
 END_VISP_NAMESPACE

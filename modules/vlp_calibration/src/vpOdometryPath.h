@@ -37,8 +37,12 @@ class vpOdometryPath
 public:
   explicit vpOdometryPath(const std::vector<vpOdometry> &samples);
 
-  //! Nothing where a time (s) is before the first sample or more than a little after the last one.
+  //! Nothing where a time (s) is before the first sample or more than a little after the last one, or where
+  //! samples are missing in between.
   std::optional<vpPlanarStep> step(double from, double until) const;
+
+  //! The same, but over missing samples as if the one behind them were their mean.
+  std::optional<vpPlanarStep> roughStep(double from, double until) const;
 
 private:
   struct Point {

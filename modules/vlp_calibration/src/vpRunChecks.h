@@ -23,6 +23,10 @@ std::string vpTooFewViews(const std::vector<vpLampRun> &runs, size_t lamps, size
 //! Whether the robot moved, by where it was found.
 std::string vpStandsStill(const std::vector<vpTrajectory> &poses);
 
+//! Whether the odometry tells the drive that the pictures show, on their clock, in m/s and rad/s. \param
+//! poses Of each run, as the pictures have them.
+std::string vpOdometryMismatch(const std::vector<vpLampRun> &runs, const std::vector<vpTrajectory> &poses);
+
 //! Whether the adjustment came to a minimum.
 std::string vpNoMinimum(const vpBundleResult &result);
 

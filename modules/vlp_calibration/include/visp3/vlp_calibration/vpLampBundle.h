@@ -60,6 +60,9 @@ struct VISP_EXPORT vpBundleResult {
   double rms = 0;         // px, of the residuals used, along each axis
   double imageFactor = 1; // by which the stated standard deviations of image points had to be multiplied
   vpOdometryError odometry;
+  //! m, standard deviation that places of lamps were given which were to be held, and do not explain the
+  //! pictures; 0 where they do.
+  double mapDoubt = 0;
   /*!
     Combinations of rig parameters that the pictures do not tell apart, or only by effects smaller than a
     detector's systematic error: each as text, `u0 with x`. Priors take no part in this.

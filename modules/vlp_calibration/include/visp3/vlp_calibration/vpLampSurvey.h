@@ -53,15 +53,15 @@ public:
   size_t fewestViews = 20; // frames that show two lamps or more
 
   /*!
-    Refuses, with one line that says what to do: too few frames, a robot that stands still, measured lamps
-    that are swapped. \throw vpException (badValue) where neither two measured lamps nor a distance is given,
-    or both.
+    Measured lamps that do not explain the pictures are taken for as uncertain as these show
+    (vpBundleResult::mapDoubt). Refuses, with one line that says what to do: too few frames, a robot that
+    stands still, odometry of another clock, unit or sign, measured lamps that are swapped. \throw vpException
+    (badValue) where neither two measured lamps nor a distance is given, or both.
   */
   vpSurveyResult solve(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map) const;
 
 private:
-  vpBundleResult adjusted(const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
-                          const vpLampMap &map) const;
+  vpLampBundle bundleOf(const vpLampMap &map) const;
   std::string swappedLamps(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map,
                            double offset) const;
   std::vector<vpSurveyedLamp> heldAgainst(const vpLampMap &map, const vpBundleResult &result) const;
