@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 #include <visp3/core/vpPixelMeterConversion.h>
 #include <visp3/vlp_calibration/vpCameraCalibration.h>
+#include <visp3/vlp_core/vpYamlNode.h>
 
+#include "common/vpTemporaryFolder.h"
 #include "vlp_calibration/boardPictures.h"
 
 namespace
@@ -160,6 +162,19 @@ TEST(CameraCalibration, RefusesSetsThatDoNotTell)
   const vpCameraEstimate straight = calibration.solve(flat, width, height);
   EXPECT_FALSE(straight.valid);
   EXPECT_NE(straight.refusal.find("tilted by 20 to 40 degrees"), std::string::npos) << straight.refusal;
+}
+
+TEST(CameraCalibration, AnyNameComesBackFromItsYaml)
+{
+  const vpTemporaryFolder folder;
+  vpCameraEstimate estimate;
+  estimate.values = Eigen::VectorXd::Constant(6, 1);
+  for (const std::string name : {"a: b", "a #b", "- x", "\"q", "%", "true", "UB300"}) {
+    const std::string file =
+        folder.write("camera_info.yaml",
+                     vpCameraInfoYaml(estimate, vpCameraCalibration::Model::perspective, name, 640, 480));
+    EXPECT_EQ(vpYamlNode::load(file).text("camera_name"), name);
+  }
 }
 
 TEST(Board, IsFoundWhereItIs)

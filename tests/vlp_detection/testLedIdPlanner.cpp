@@ -338,6 +338,15 @@ TEST(LedIdPlanner, ConfusionFindsThePairsThatAreNear)
   EXPECT_EQ(shared[0].apart, 0); // the first two hang in one place
 }
 
+TEST(LedIdPlanner, StripesTooLongToTellAreNotToldApart)
+{
+  const vpLedIdPlanner planner(rigOf(fullSize));
+  const std::vector<vpLedIdPair> pairs = planner.confusion(mapOf({pwm(20, 0.5), pwm(1000, 0.5)}, crystal));
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].distance, 0);
+  EXPECT_EQ(pairs[0].error, 0.5);
+}
+
 TEST(LedIdPlanner, BadSettingsAreRefused)
 {
   vpLedIdPlanner planner(rigOf(fullSize));

@@ -76,6 +76,11 @@ vpLedIdPair pairOf(const Seen &a, const Seen &b)
     squared += std::pow(std::min(a.chipDistance, b.chipDistance), 2) * pair.chips;
   }
   pair.distance = std::sqrt(squared);
+  if (!std::isfinite(pair.distance)) { // stripes so long that they tell no frequency
+    pair.distance = 0;
+    pair.error = vpNormalTail(0);
+    return pair;
+  }
   pair.error = a.scatter.empty() ? vpNormalTail(0.5 * pair.distance) : std::max(errorOf(a, b), errorOf(b, a));
   return pair;
 }
