@@ -122,6 +122,25 @@ TEST(ShutterCalibration, LampsOfOtherFrequenciesAreNoWitnesses)
   EXPECT_NE(found.refusal.find("--lamps"), std::string::npos) << found.refusal;
 }
 
+// Each of two lamps says another row time: a vague guess does not choose.
+TEST(ShutterCalibration, OneWrongFrequencyOfTwoIsRefused)
+{
+  vpSimulation world = simulation(2);
+  vpLampMap wrong = world.map();
+  wrong.lamps.resize(2);
+  wrong.lamps[1].modulation.frequency *= 1.07;
+  vpVlpRig rig = world.rig();
+  rig.shutter.rowTimeSigma = 0.2 * rig.shutter.rowTime;
+  vpShutterCalibration calibration(rig, wrong);
+  vpVlpFrame frame;
+  for (int i = 0; i < 2 && world.next(frame); ++i) {
+    calibration.add(frame);
+  }
+  const vpShutterEstimate found = calibration.solve();
+  EXPECT_FALSE(found.valid) << found.rowTime << " " << world.rig().shutter.rowTime;
+  EXPECT_NE(found.refusal.find("frequency_hz"), std::string::npos) << found.refusal;
+}
+
 TEST(ShutterCalibration, NeedsALampOfKnownFrequency)
 {
   vpLamp lamp;

@@ -201,9 +201,24 @@ double vpShutterCalibration::likeliestRowTime(const std::vector<Stripes> &stripe
               "first guess";
     return 0;
   }
-  return *std::min_element(rowTimes.begin(), rowTimes.end(), [this](double a, double b) {
-    return std::abs(std::log(a / m_rig.shutter.rowTime)) < std::abs(std::log(b / m_rig.shutter.rowTime));
+  const double rig = m_rig.shutter.rowTime;
+  const double nearest = *std::min_element(rowTimes.begin(), rowTimes.end(), [rig](double a, double b) {
+    return std::abs(std::log(a / rig)) < std::abs(std::log(b / rig));
   });
+  // Where a good part of the stripes fits no lamp, frequencies may be wrong: then the rig must rule the other
+  // row times out.
+  static const double goodPart = 0.75, same = 0.01, sigmas = 4;
+  const auto other = std::find_if(rowTimes.begin(), rowTimes.end(), [&](double rowTime) {
+    return std::abs(rowTime / nearest - 1) > same &&
+           std::abs(rowTime - rig) < sigmas * m_rig.shutter.rowTimeSigma;
+  });
+  if (static_cast<double>(most) < goodPart * static_cast<double>(stripes.size()) && other != rowTimes.end()) {
+    refusal = "row times of " + vpNumberText(nearest) + " and " + vpNumberText(*other) +
+              " s explain a part of the stripes each, and the rig's row_time_sigma_s admits both; correct "
+              "frequency_hz of the lamps, or show only those of the map";
+    return 0;
+  }
+  return nearest;
 }
 
 std::vector<vpShutterSight> vpShutterCalibration::sightsAt(double rowTime,
