@@ -79,6 +79,7 @@ struct Options {
                                                    (lamps.empty() ? "nothing" : "beside --lamps") +
                                                    ", expected one of --frequency and --lamps");
     }
+    vpCalibrationFolder::check(out, {rig, lamps});
     if (!out.empty() && rig.empty()) {
       throw vpException(vpException::badValue,
                         "--out: " + out + " without --rig, expected the rig to complete");

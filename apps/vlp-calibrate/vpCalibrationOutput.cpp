@@ -161,6 +161,18 @@ vpCalibrationFolder::vpCalibrationFolder(const std::string &folder) : m_folder(f
   }
 }
 
+void vpCalibrationFolder::check(const std::string &folder, const std::vector<std::string> &inputs)
+{
+  for (const std::string &input : inputs) {
+    const fs::path written = fs::path(folder) / fs::path(input).filename();
+    std::error_code none; // of a file that is not there
+    if (!folder.empty() && !input.empty() && fs::equivalent(written, input, none)) {
+      throw vpException(vpException::badValue, "--out: " + folder + ", whose " + written.filename().string() +
+                                                   " is an input, expected another folder");
+    }
+  }
+}
+
 std::string vpCalibrationFolder::operator/(const std::string &name) const
 {
   return (fs::path(m_folder) / name).string();

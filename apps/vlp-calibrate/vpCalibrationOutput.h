@@ -51,6 +51,9 @@ class vpCalibrationFolder
 public:
   explicit vpCalibrationFolder(const std::string &folder);
 
+  //! Refuses a folder --out in which what is written would replace an input. \throw vpException (badValue)
+  static void check(const std::string &folder, const std::vector<std::string> &inputs);
+
   std::string operator/(const std::string &name) const;
   void write(const std::string &name, const std::string &text) const;
 

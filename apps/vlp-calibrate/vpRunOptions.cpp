@@ -13,6 +13,7 @@
 #include <visp3/vlp_detection/vpLedDetector.h>
 
 #include "common/vpCommandLine.h"
+#include "vpCalibrationOutput.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -86,6 +87,7 @@ void vpRunOptions::finish()
       fail(std::string(option) + ": nothing, expected a file");
     }
   }
+  vpCalibrationFolder::check(out, {rig, lamps});
   if ((motion == "places") == places.empty()) {
     fail("--places: " + (places.empty() ? std::string("nothing") : places) +
          ", expected a file with --motion places, and only then");

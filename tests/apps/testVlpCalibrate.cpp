@@ -96,6 +96,8 @@ TEST_F(VlpCalibrate, RefusesBadUsageInOneLine)
   expectRefused({"lamps", "--run", run(), "--measured", "LED1,LED9"}, badInput,
                 {"--measured", "LED9", "LED1, LED2"});
   expectRefused({"lamps", "--run", run(), "--distance", "LED1,LED2"}, badInput, {"--distance"});
+  expectRefused({"mount", "--run", run(), "--out", run()}, badInput, {"--out", "rig.yaml is an input"});
+  expectRefused({"shutter", "--run", run(), "--out", run()}, badInput, {"--out", "rig.yaml is an input"});
 }
 
 TEST_F(VlpCalibrate, ShutterWritesTheRig)
