@@ -347,6 +347,21 @@ TEST(LedIdPlanner, StripesTooLongToTellAreNotToldApart)
   EXPECT_EQ(pairs[0].error, 0.5);
 }
 
+TEST(LedIdPlanner, AliasesAreNotToldApart)
+{
+  vpVlpRig rig = rigOf(fullSize);
+  rig.shutter.exposure = 5e-6; // short: both make stripes
+  const vpLedIdPlanner planner(rig);
+  const double other = 2 * planner.prediction.fold() - 3000;
+  const std::vector<vpLedIdPair> pairs =
+      planner.confusion(mapOf({pwm(3000, 0.5), pwm(other, 0.5), pwm(5000, 0.5)}, crystal));
+  ASSERT_EQ(pairs.size(), 3u);
+  EXPECT_EQ(pairs[0].first, 0u);
+  EXPECT_EQ(pairs[0].second, 1u);
+  EXPECT_GT(pairs[0].error, 0.4);
+  EXPECT_LT(pairs[1].error, 1e-3);
+}
+
 TEST(LedIdPlanner, BadSettingsAreRefused)
 {
   vpLedIdPlanner planner(rigOf(fullSize));

@@ -24,11 +24,18 @@ namespace
 //! An identifier as the rig sees the smallest of its lamps.
 struct Seen {
   const vpModulation *sent;
+  double apparent; // Hz, of the stripes
   vpStripeDoubt doubt;
   std::vector<vpStripeDoubt> scatter; // at some phases; empty of a word
   double chipDistance = 0;            // of two words that differ in one chip
   std::string chips;
 };
+
+//! The frequency, Hz, that stripes show to lines of a rate (Hz): above half of it another one (aliasing).
+double apparentOf(const vpModulation &sent, double lineRate)
+{
+  return std::abs(std::remainder(sent.repetitionFrequency(), lineRate));
+}
 
 double squaredDistance(double difference, double sigma, double otherSigma)
 {
@@ -42,11 +49,10 @@ bool comparable(const Seen &a, const Seen &b)
 }
 
 //! Squared distance in units of a pair of doubts, words' chips left out.
-double squaredDistance(const vpModulation &a, const vpModulation &b, const vpStripeDoubt &ofA,
-                       const vpStripeDoubt &ofB)
+double squaredDistance(const Seen &one, const Seen &other, const vpStripeDoubt &ofA, const vpStripeDoubt &ofB)
 {
-  double squared =
-      squaredDistance(a.repetitionFrequency() - b.repetitionFrequency(), ofA.frequency, ofB.frequency);
+  const vpModulation &a = *one.sent, &b = *other.sent;
+  double squared = squaredDistance(one.apparent - other.apparent, ofA.frequency, ofB.frequency);
   if (a.duty && b.duty) {
     squared += squaredDistance(*a.duty - *b.duty, ofA.duty, ofB.duty);
   }
@@ -62,7 +68,7 @@ double errorOf(const Seen &sent, const Seen &other)
 {
   double sum = 0;
   for (const vpStripeDoubt &here : sent.scatter) {
-    sum += vpNormalTail(0.5 * std::sqrt(squaredDistance(*sent.sent, *other.sent, here, here)));
+    sum += vpNormalTail(0.5 * std::sqrt(squaredDistance(sent, other, here, here)));
   }
   return sum / static_cast<double>(sent.scatter.size());
 }
@@ -70,7 +76,7 @@ double errorOf(const Seen &sent, const Seen &other)
 vpLedIdPair pairOf(const Seen &a, const Seen &b)
 {
   vpLedIdPair pair;
-  double squared = squaredDistance(*a.sent, *b.sent, a.doubt, b.doubt);
+  double squared = squaredDistance(a, b, a.doubt, b.doubt);
   if (a.sent->kind == vpModulation::Kind::word) {
     pair.chips = static_cast<int>(vpWordCode(a.chips).distance(vpWordCode(b.chips)));
     squared += std::pow(std::min(a.chipDistance, b.chipDistance), 2) * pair.chips;
@@ -88,7 +94,7 @@ vpLedIdPair pairOf(const Seen &a, const Seen &b)
 Seen seenWord(const vpStripePrediction &prediction, const vpLamp &lamp, double lines)
 {
   const vpModulation &sent = lamp.modulation;
-  Seen seen{&sent, {}, {}, 0, sent.chips()};
+  Seen seen{&sent, apparentOf(sent, 2 * prediction.fold()), {}, {}, 0, sent.chips()};
   if (seen.chips.size() > vpWordCode::mostChips) {
     throw vpException(vpException::badValue,
                       "lamp " + vpShown(lamp.id) + ": a word of " + std::to_string(seen.chips.size()) +
@@ -133,6 +139,7 @@ std::vector<vpLedIdPair> vpLedIdPlanner::confusion(const vpLampMap &map, double 
     all.push_back(lamp.modulation.kind == vpModulation::Kind::word
                       ? seenWord(prediction, lamp, lines)
                       : Seen{&lamp.modulation,
+                             apparentOf(lamp.modulation, 2 * prediction.fold()),
                              prediction.doubt(lamp.modulation, lines, lamp.oscillatorPpm),
                              prediction.scatter(lamp.modulation, lines, lamp.oscillatorPpm),
                              0,
