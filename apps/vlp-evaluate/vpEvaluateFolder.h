@@ -24,12 +24,23 @@ public:
   explicit vpEvaluateFolder(std::string folder) : m_folder(std::move(folder))
   {
     std::error_code error;
-    std::filesystem::create_directories(m_folder, error);
+    m_made = std::filesystem::create_directories(m_folder, error);
     if (error) {
       throw vpException(vpException::ioError, m_folder + ": the folder cannot be made: " + error.message());
     }
     const vpAtomicFile probe(path("report.html")); // gone again, since it is not committed
   }
+
+  //! A folder that was made for nothing goes again.
+  ~vpEvaluateFolder()
+  {
+    std::error_code notEmpty;
+    if (m_made) {
+      std::filesystem::remove(m_folder, notEmpty);
+    }
+  }
+  vpEvaluateFolder(const vpEvaluateFolder &) = delete;
+  vpEvaluateFolder &operator=(const vpEvaluateFolder &) = delete;
 
   void add(const std::string &name, std::string bytes) { m_files.emplace_back(name, std::move(bytes)); }
 
@@ -49,6 +60,7 @@ private:
   }
 
   std::string m_folder;
+  bool m_made = false;
   std::vector<std::pair<std::string, std::string>> m_files;
 };
 
