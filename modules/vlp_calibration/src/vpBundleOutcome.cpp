@@ -112,12 +112,14 @@ std::vector<std::string> vpBundleProblem::unseparated()
 
 /*!
   Of what is free. Image points count for no better than stated there: what all of them are off by together
-  is in that, and shows in no residual.
+  is in that, and shows in no residual. Nor do they count for worse by what is chance: taken one way only, it
+  would make all standard deviations too large.
 */
 Eigen::MatrixXd vpBundleProblem::covariance()
 {
-  const double found = m_imageWeight;
-  m_imageWeight = std::min(found, 1.0);
+  static const double surprising = 3; // standard deviations of the weight
+  const double found = m_imageWeight, chance = std::sqrt(0.5 / std::max(1.0, m_imageRedundancy));
+  m_imageWeight = found > 1 - surprising * chance ? 1 : found;
   const Eigen::MatrixXd inverse = vpInverseOf(equations().information());
   m_imageWeight = found;
   return inverse;

@@ -66,6 +66,7 @@ bool vpBundleProblem::weigh()
     for (const size_t row : rows) {
       squares += equations.residuals()[row] * equations.residuals()[row];
     }
+    m_imageRedundancy = kind == Row::image ? redundancy : m_imageRedundancy;
     const double before = weight;
     weight = std::clamp(weight * std::sqrt(redundancy / std::max(squares, 1e-12)), lowest, most);
     double &last = m_lastSteps[static_cast<size_t>(kind)];
