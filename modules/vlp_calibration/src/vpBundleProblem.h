@@ -86,7 +86,7 @@ private:
   std::vector<Eigen::Vector2d> m_slips;             // of the wheels over these, a share
   std::vector<Eigen::Vector2d> m_rates;             // what speed and turn rate are off by within each view
 
-  double m_imageWeight = 0.03; // at first: from a start that is far off, exact images are a long narrow way
+  double m_imageWeight = 0.03;  // at first: from a start that is far off, exact images are a long narrow way
   double m_imageRedundancy = 0; // rows of images less what they determine
   double m_ratesWeight = 1;
   double m_slipWeight = 1;

@@ -38,6 +38,7 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   m_trust->forgetPlaces();
   addMotionDoubt(location, members);
   correct(fine, members);
+  m_moving = moving;
   // One frame alone hardly tells a robot that moves from lamps that hang a little elsewhere.
   if (moving && fine.fix.valid) {
     location.fix.wMb = fine.fix.wMb;

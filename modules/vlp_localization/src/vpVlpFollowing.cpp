@@ -48,7 +48,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   const std::vector<size_t> &whole = unchanged(location, usable);
   // Most lamps have changed where the robot is elsewhere; and a filter that is too young is no help.
   const bool changed = 2 * whole.size() < usable.size(),
-             unknown = (m_followed < young || std::exchange(m_refused, false)) && vague(location.timestamp);
+             unknown = ((m_followed < young && !m_moving) || std::exchange(m_refused, false)) &&
+                       vague(location.timestamp);
   if ((changed && beginAnew(location, all, usable, true)) ||
       (unknown && beginAnew(location, location.observations, whole, false))) {
     return;
@@ -79,7 +80,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
                     (alone.degreesOfFreedom > 0 && alone.lamps.size() > accepted(location)))) {
     if (contradictory) {
       filter.doubtClaims();
-      m_contradictions = m_unresting = 0;
+      m_contradictions = 0;
+      m_unresting = 0;
     }
     location.observations = apart;
     location.fix = alone;
@@ -224,10 +226,11 @@ bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vecto
   const bool now = usable.size() > 2 && (roused || 2 * static_cast<size_t>(apart) >= usable.size() ||
                                          (!calm && strain(location, usable) > mostStrain));
   m_contradictions = now ? m_contradictions + 1 : std::max(0, m_contradictions - 1);
-  static const double unresting = 0.2; // share of the random accelerations
-  static const int forGood = 24;       // frames
-  m_unresting =
-      usable.size() > 2 && filter.unrest() > unresting ? m_unresting + 1 : std::max(0, m_unresting - 2);
+  static const double unresting = 0.2;            // share of the random accelerations
+  static const double forGood = 2, longest = 0.4; // s; between two frames
+  const double since = m_lastPose ? std::min(longest, location.timestamp - m_lastPose->time) : 0;
+  m_unresting = usable.size() > 2 && filter.unrest() > unresting ? m_unresting + since
+                                                                 : std::max(0.0, m_unresting - 2 * since);
   return m_contradictions >= often || m_unresting >= forGood;
 }
 

@@ -137,7 +137,8 @@ bool vpVlpLocalizer::inOrder(double time)
     filter.stop();
     tracker.reset();
     m_lastPose.reset();
-    m_contradictions = m_unresting = 0;
+    m_contradictions = 0;
+    m_unresting = 0;
     *m_trust = vpLampTrust();
   }
   m_lastFrame = time;

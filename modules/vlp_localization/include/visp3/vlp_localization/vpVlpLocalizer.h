@@ -134,8 +134,9 @@ private:
   std::unique_ptr<vpLampTrust> m_trust;
   std::unique_ptr<Scratch> m_scratch; // memory that frames after the first take over
   int m_followed = 0;                 // frames since the filter's start
+  bool m_moving = false;              // the filter began with a velocity, from the pose before
   int m_contradictions = 0; // frames of late whose lamps contradict what camera and map say of themselves
-  int m_unresting = 0;      // frames of late in which only a robot that never comes to rest explains them
+  double m_unresting = 0;   // s, of late, in which only a robot that never comes to rest explains the frames
   bool m_refused = false;   // the frame before: its lamps did not agree with the robot's motion
   int m_disagreements = 0;  // frames in a row whose lamps agree with each other, and not with the filter
 };
