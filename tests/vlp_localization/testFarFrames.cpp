@@ -107,6 +107,22 @@ TEST(FarFrames, FirstFramesOfARobotThatDrivesAreWithinTheirSigma)
   }
 }
 
+// Where frames are far apart a filter that began anew with each would carry nothing.
+TEST(FarFrames, AtThreeFramesASecondItFollows)
+{
+  const Pair pair;
+  const Path path = drives(-1, 9, 0.1, 0.1);
+  vpVlpLocalizer localizer = pair.localizer();
+  for (int k = 0; k < 10; ++k) {
+    const double time = k / 3.0;
+    const vpVlpLocation location = localizer.process(pair.camera.frame(
+        pair.lamps, time, path, std::fmod(37.7 * time, 1), static_cast<unsigned int>(k + 1)));
+    ASSERT_TRUE(location.fix.valid) << k << ": " << location.fix.refusal;
+    EXPECT_TRUE(isAt(location.fix, path(time), 4)) << k;
+    EXPECT_TRUE(location.tracked || k < 3) << k;
+  }
+}
+
 // One of the two lamps may fit a place where the robot is not.
 TEST(FarFrames, CarriedUnderTwoLampsItIsNeverFarFromWhereItSays)
 {
