@@ -70,13 +70,7 @@ vpExitCode vpCalibrateMount(int argc, char **argv)
     text += "told apart by the prior alone: " + names + "\n";
   }
   std::cout << text;
-  std::vector<size_t> held;
-  for (size_t k = 0; k < map.lamps.size(); ++k) {
-    if (map.lamps[k].positionSigma == 0) {
-      held.push_back(k);
-    }
-  }
-  vpWarnOfDoubt(found, map, held);
+  vpWarnOfDoubt(found, map);
   if (!options.out.empty()) {
     const vpCalibrationFolder folder(options.out);
     vpWritePicture(folder / "residuals.png",

@@ -118,16 +118,16 @@ vpReportTable vpRigTable(const vpBundleResult &result, const vpRigVector &priors
   return table;
 }
 
-void vpWarnOfDoubt(const vpBundleResult &result, const vpLampMap &map, const std::vector<size_t> &held)
+void vpWarnOfDoubt(const vpBundleResult &result, const vpLampMap &map)
 {
-  if (result.mapDoubt == 0) {
+  if (result.doubted.empty()) {
     return;
   }
   const auto offset = [&](size_t lamp) {
     return (result.map.lamps[lamp].position - map.lamps[lamp].position).norm();
   };
-  const size_t farthest =
-      *std::max_element(held.begin(), held.end(), [&](size_t a, size_t b) { return offset(a) < offset(b); });
+  const size_t farthest = *std::max_element(result.doubted.begin(), result.doubted.end(),
+                                            [&](size_t a, size_t b) { return offset(a) < offset(b); });
   spdlog::warn(
       "lamps that hang exactly where position_m has them do not explain the pictures: each was taken "
       "for {:.1f} mm uncertain; {} is farthest off, by {:.1f} mm. Measure again, or give a "

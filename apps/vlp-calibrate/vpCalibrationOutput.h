@@ -35,9 +35,8 @@ std::vector<vpDrawnResidual> vpResidualsOf(const vpBundleResult &result);
 //! The rig parameters that were not held: value, step, standard deviation.
 vpReportTable vpRigTable(const vpBundleResult &result, const vpRigVector &priors);
 
-//! Warns where lamps that were to be held do not explain the pictures, and names the one farthest off. \param
-//! held Indices into \e map.
-void vpWarnOfDoubt(const vpBundleResult &result, const vpLampMap &map, const std::vector<size_t> &held);
+//! Warns where lamps that were to be held do not explain the pictures, and names the one farthest off.
+void vpWarnOfDoubt(const vpBundleResult &result, const vpLampMap &map);
 
 //! Covariance of the rig parameters as CSV, m, rad, px and share.
 std::string vpCovarianceCsv(const vpBundleResult &result);

@@ -106,18 +106,24 @@ TEST(ShutterCalibration, SaysWhereThereAreNoStripes)
   EXPECT_NE(found.refusal.find("no stripes"), std::string::npos) << found.refusal;
 }
 
+//! From two frames of a world, with what is believed of it.
+vpShutterEstimate fromTwoFrames(vpSimulation &world, const vpVlpRig &rig, const vpLampMap &map)
+{
+  vpShutterCalibration calibration(rig, map);
+  vpVlpFrame frame;
+  for (int i = 0; i < 2 && world.next(frame); ++i) {
+    calibration.add(frame);
+  }
+  return calibration.solve();
+}
+
 // Two lamps on, and one frequency said of both.
 TEST(ShutterCalibration, LampsOfOtherFrequenciesAreNoWitnesses)
 {
   vpSimulation world = simulation(2);
   vpLampMap one = world.map();
   one.lamps.resize(1);
-  vpShutterCalibration calibration(world.rig(), one);
-  vpVlpFrame frame;
-  for (int i = 0; i < 2 && world.next(frame); ++i) {
-    calibration.add(frame);
-  }
-  const vpShutterEstimate found = calibration.solve();
+  const vpShutterEstimate found = fromTwoFrames(world, world.rig(), one);
   EXPECT_FALSE(found.valid);
   EXPECT_NE(found.refusal.find("--lamps"), std::string::npos) << found.refusal;
 }
@@ -131,13 +137,8 @@ TEST(ShutterCalibration, OneWrongFrequencyOfTwoIsRefused)
   wrong.lamps[1].modulation.frequency *= 1.07;
   vpVlpRig rig = world.rig();
   rig.shutter.rowTimeSigma = 0.2 * rig.shutter.rowTime;
-  vpShutterCalibration calibration(rig, wrong);
-  vpVlpFrame frame;
-  for (int i = 0; i < 2 && world.next(frame); ++i) {
-    calibration.add(frame);
-  }
-  const vpShutterEstimate found = calibration.solve();
-  EXPECT_FALSE(found.valid) << found.rowTime << " " << world.rig().shutter.rowTime;
+  const vpShutterEstimate found = fromTwoFrames(world, rig, wrong);
+  EXPECT_FALSE(found.valid);
   EXPECT_NE(found.refusal.find("frequency_hz"), std::string::npos) << found.refusal;
 }
 

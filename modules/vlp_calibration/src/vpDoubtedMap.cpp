@@ -59,6 +59,7 @@ vpBundleResult vpUnderDoubtedMap(const vpBundleResult &found, const vpLampBundle
     }
     result = doubted;
     result.mapDoubt = sigma;
+    result.doubted = held;
     const double next = shown(result, map, held, sigma);
     if (std::abs(std::log(next / sigma)) < nearly) {
       break;

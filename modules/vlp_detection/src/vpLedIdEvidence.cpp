@@ -21,6 +21,7 @@ void average(double &mean, double &sigma, double value, double valueSigma)
   mean = (weight * mean + more * value) / (weight + more);
   sigma = 1 / std::sqrt(weight + more);
 }
+
 //! What is new in each frame averages out, what frames share does not.
 void average(double &noise, double &sigma, double weight, double otherNoise, double otherSigma, double other)
 {

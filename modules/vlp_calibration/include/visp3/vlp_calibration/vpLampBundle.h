@@ -63,6 +63,7 @@ struct VISP_EXPORT vpBundleResult {
   //! m, standard deviation that places of lamps were given which were to be held, and do not explain the
   //! pictures; 0 where they do.
   double mapDoubt = 0;
+  std::vector<size_t> doubted; // these lamps
   /*!
     Combinations of rig parameters that the pictures do not tell apart, or only by effects smaller than a
     detector's systematic error: each as text, `u0 with x`. Priors take no part in this.
