@@ -11,6 +11,7 @@
   pictures, drawn pixel by pixel from the ray of each.
 */
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -28,6 +29,7 @@ using namespace VISP_NAMESPACE_NAME;
 namespace boardPictures
 {
 constexpr unsigned int width = 800, height = 600;
+constexpr double discShare = 0.4; // of the spacing, radius
 
 inline vpCameraParameters camera(double kud = -0.12)
 {
@@ -86,12 +88,30 @@ inline std::vector<vpBoardSight> sights(const vpBoard &board, int count, double 
   return all;
 }
 
+//! Discs of 0.4 of the spacing as vpBoard::pattern would draw them, with its margins.
+inline cv::Mat_<unsigned char> discs(const vpBoard &board, int perSquare)
+{
+  cv::Mat_<unsigned char> grey((board.rows + 3) * perSquare, (board.columns + 3) * perSquare, 255);
+  for (int v = 0; v < grey.rows; ++v) {
+    for (int u = 0; u < grey.cols; ++u) {
+      const double x = (u + 0.5) / perSquare - 2, y = (v + 0.5) / perSquare - 2,
+                   column = std::clamp(std::round(x), 0.0, board.columns - 1.0),
+                   row = std::clamp(std::round(y), 0.0, board.rows - 1.0);
+      if (std::hypot(x - column, y - row) < discShare) {
+        grey(v, u) = 0;
+      }
+    }
+  }
+  return grey;
+}
+
 //! A whole picture: 3 x 3 rays a pixel, each taken back through the distortion and on to the board.
 inline cv::Mat_<unsigned char> picture(const vpBoard &board, const vpCameraParameters &camera,
                                        const vpHomogeneousMatrix &cMo, std::mt19937_64 &random)
 {
   const int perSquare = 40;
-  const cv::Mat_<unsigned char> pattern = board.pattern(perSquare);
+  const cv::Mat_<unsigned char> pattern =
+      board.kind == vpBoard::Kind::circles ? discs(board, perSquare) : board.pattern(perSquare);
   const vpHomogeneousMatrix oMc = cMo.inverse();
   std::normal_distribution<double> noise(0, 1);
   cv::Mat_<unsigned char> grey(static_cast<int>(height), static_cast<int>(width));

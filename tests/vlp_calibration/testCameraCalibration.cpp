@@ -199,6 +199,81 @@ TEST(Board, IsFoundWhereItIs)
   }
 }
 
+//! Large ones as well: as a camera of 3 megapixels shows those of a sheet of paper.
+TEST(Board, TellsHowLargeItsDiscsAre)
+{
+  vpBoard board;
+  board.kind = vpBoard::Kind::circles;
+  board.columns = 4;
+  board.rows = 3;
+  board.spacing = 0.09;
+  std::mt19937_64 random(4);
+  const vpHomogeneousMatrix cMo(vpTranslationVector(-0.15, -0.1, 0.4), vpRotationMatrix(0.4, 0.2, 0.1));
+  const vpBoardSight truth = sight(board, camera(), cMo, 0, random, "truth");
+  const vpBoardSight found = board.find(imageOf(picture(board, camera(), cMo, random)), "picture");
+  ASSERT_EQ(found.pixels.size(), 12u);
+  EXPECT_NEAR(found.discRadius, discShare * board.spacing, 0.03 * discShare * board.spacing);
+}
+
+//! What pictures of discs show: the middles of what these cover, by a polygon of many corners.
+std::vector<vpBoardSight> discSights(const vpBoard &board, double radius, double noise, unsigned int seed)
+{
+  const int corners = 400;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0, noise);
+  std::vector<vpBoardSight> all;
+  for (int i = 0; i < 15; ++i) {
+    const vpHomogeneousMatrix cMo = held(board, i, random);
+    vpBoardSight shown = sight(board, camera(), cMo, 0, random, "picture " + std::to_string(i));
+    shown.discRadius = radius;
+    for (size_t k = 0; k < shown.pixels.size(); ++k) {
+      std::vector<cv::Point2d> rim;
+      for (int j = 0; j < corners; ++j) {
+        const double angle = 2 * M_PI * j / corners;
+        const vpColVector c =
+            cMo * vpColVector(std::vector<double>{shown.board[k].x + radius * std::cos(angle),
+                                                  shown.board[k].y + radius * std::sin(angle), 0, 1});
+        double u = 0, v = 0;
+        vpMeterPixelConversion::convertPoint(camera(), c[0] / c[2], c[1] / c[2], u, v);
+        rim.emplace_back(u - shown.pixels[k].x, v - shown.pixels[k].y);
+      }
+      cv::Point2d moment(0, 0);
+      double area = 0;
+      for (size_t j = 0; j < rim.size(); ++j) {
+        const cv::Point2d &a = rim[j], &b = rim[(j + 1) % rim.size()];
+        area += a.cross(b);
+        moment += a.cross(b) / 3 * (a + b);
+      }
+      shown.pixels[k] += cv::Point2f(static_cast<float>(moment.x / area + normal(random)),
+                                     static_cast<float>(moment.y / area + normal(random)));
+    }
+    all.push_back(shown);
+  }
+  return all;
+}
+
+//! The middle of a disc's picture is not the picture of its middle: taken for that, the focal length is
+//! short.
+TEST(CameraCalibration, DiscsAreNotTakenForPoints)
+{
+  const vpBoard board;
+  std::vector<vpBoardSight> seen = discSights(board, discShare * board.spacing, 0.01, 5);
+  const vpCameraEstimate found = vpCameraCalibration().solve(seen, width, height);
+  ASSERT_TRUE(found.valid) << found.refusal;
+  EXPECT_EQ(found.views.size(), seen.size());
+  const Eigen::Vector4d truth(488, 489, 395, 305);
+  const auto sigmas = [&truth](const vpCameraEstimate &estimate, int i) {
+    return (estimate.values(i) - truth(i)) / std::sqrt(estimate.covariance(i, i));
+  };
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_LT(std::abs(sigmas(found, i)), 3.5) << found.names[static_cast<size_t>(i)];
+  }
+  for (vpBoardSight &sight : seen) {
+    sight.discRadius = 0;
+  }
+  EXPECT_LT(sigmas(vpCameraCalibration().solve(seen, width, height), 0), -4);
+}
+
 //! As markers are counted, and circles of which a part is found.
 TEST(CameraCalibration, PointsCountedForABoardOfAnotherSizeAreRefusedAsSuch)
 {

@@ -5,19 +5,13 @@
 #include <visp3/vlp_calibration/vpCameraCalibration.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
-#include <Eigen/Geometry>
-#include <ceres/autodiff_cost_function.h>
-#include <ceres/rotation.h>
-#include <ceres/solver.h>
-#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
 #include <visp3/vlp_core/vpNumberText.h>
 
-#include "vpCameraModel.h"
-#include "vpNormalEquations.h"
+#include "vpCameraFit.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -25,130 +19,9 @@ namespace
 {
 using Model = vpCameraCalibration::Model;
 
-//! Where OpenCV says that all is.
-struct Start {
-  std::vector<double> parameters;
-  std::vector<std::array<double, 6>> poses; // rotation vector, translation (m)
-};
-
-//! \throw cv::Exception where OpenCV sees no way.
-Start startOf(Model model, const std::vector<vpBoardSight> &sights, cv::Size size)
+double square(double x)
 {
-  std::vector<std::vector<cv::Point3f>> boards;
-  std::vector<std::vector<cv::Point2f>> pixels;
-  for (const vpBoardSight &sight : sights) {
-    boards.push_back(sight.board);
-    pixels.push_back(sight.pixels);
-  }
-  cv::Mat K = cv::Mat::eye(3, 3, CV_64F), D;
-  std::vector<cv::Mat> turns, ways;
-  int flags = 0;
-  if (model != Model::opencv) {
-    flags |= cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
-    flags |= model == Model::perspective ? cv::CALIB_FIX_K1 : 0;
-  }
-  cv::calibrateCamera(boards, pixels, size, K, D, turns, ways, flags);
-  Start start;
-  start.parameters = {K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2), K.at<double>(1, 2)};
-  D = D.reshape(1, 1);
-  if (model == Model::visp) {
-    start.parameters.push_back(D.at<double>(0));
-  } else if (model == Model::kannalaBrandt) { // of an ideal lens tan(angle) = angle + angle^3 / 3 + ...
-    start.parameters.insert(start.parameters.end(), {1.0 / 3 + D.at<double>(0), 0, 0, 0});
-  } else if (model == Model::opencv) {
-    for (int i = 0; i < 5; ++i) {
-      start.parameters.push_back(D.at<double>(i));
-    }
-  }
-  for (size_t i = 0; i < turns.size(); ++i) {
-    std::array<double, 6> pose{};
-    for (int k = 0; k < 3; ++k) {
-      pose[static_cast<size_t>(k)] = turns[i].at<double>(k);
-      pose[static_cast<size_t>(k) + 3] = ways[i].at<double>(k);
-    }
-    start.poses.push_back(pose);
-  }
-  return start;
-}
-
-template <Model model>
-struct PointResidual {
-  Eigen::Vector3d board;
-  Eigen::Vector2d pixel;
-
-  template <typename T>
-  bool operator()(const T *parameters, const T *pose, T *residual) const
-  {
-    const T point[3] = {T(board.x()), T(board.y()), T(board.z())};
-    T c[3];
-    ceres::AngleAxisRotatePoint(pose, point, c);
-    const T z = c[2] + pose[5];
-    const Eigen::Matrix<T, 2, 1> at =
-        vpPixelOf<model>(parameters, T((c[0] + pose[3]) / z), T((c[1] + pose[4]) / z));
-    residual[0] = T(pixel.x()) - at(0);
-    residual[1] = T(pixel.y()) - at(1);
-    return true;
-  }
-};
-
-//! Fits all to the points from where it starts. \return False where that comes to no end.
-template <Model model>
-bool adjust(const std::vector<vpBoardSight> &sights, Start &start, vpCameraEstimate &estimate)
-{
-  ceres::Problem problem;
-  std::vector<ceres::ResidualBlockId> blocks;
-  std::vector<double *> poses;
-  for (size_t i = 0; i < sights.size(); ++i) {
-    poses.push_back(start.poses[i].data());
-    for (size_t k = 0; k < sights[i].board.size(); ++k) {
-      const cv::Point3f &board = sights[i].board[k];
-      const cv::Point2f &pixel = sights[i].pixels[k];
-      auto *residual = new PointResidual<model>{{board.x, board.y, board.z}, {pixel.x, pixel.y}};
-      blocks.push_back(problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<PointResidual<model>, 2, vpParametersOf(model), 6>(residual),
-          nullptr, start.parameters.data(), start.poses[i].data()));
-    }
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-12;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable()) {
-    return false;
-  }
-  const vpNormalEquations equations(problem, poses, {start.parameters.data()}, blocks);
-  const std::vector<double> &residuals = equations.residuals();
-  double squares = 0;
-  for (const double residual : residuals) {
-    squares += residual * residual;
-  }
-  const double freedom =
-      static_cast<double>(residuals.size()) - vpParametersOf(model) - 6. * static_cast<double>(poses.size());
-  estimate.values = Eigen::Map<Eigen::VectorXd>(start.parameters.data(), vpParametersOf(model));
-  estimate.covariance = squares / std::max(1.0, freedom) * vpInverseOf(equations.information());
-  estimate.rms = std::sqrt(squares / static_cast<double>(residuals.size()));
-  size_t row = 0;
-  for (size_t i = 0; i < sights.size(); ++i) {
-    vpCalibratedView view;
-    view.picture = sights[i].picture;
-    const Eigen::Vector3d turn(start.poses[i][0], start.poses[i][1], start.poses[i][2]);
-    const Eigen::Matrix3d R(Eigen::AngleAxisd(
-        turn.norm(), turn.norm() > 0 ? Eigen::Vector3d(turn.normalized()) : Eigen::Vector3d::UnitX()));
-    view.tilt = std::acos(std::min(1.0, std::abs(R(2, 2))));
-    double own = 0;
-    for (const cv::Point2f &pixel : sights[i].pixels) {
-      view.points.emplace_back(pixel.x, pixel.y);
-      view.residuals.emplace_back(residuals[row], residuals[row + 1]);
-      own += view.residuals.back().squaredNorm();
-      row += 2;
-    }
-    view.rms = std::sqrt(own / (2. * static_cast<double>(view.points.size())));
-    estimate.views.push_back(view);
-  }
-  return true;
+  return x * x;
 }
 
 //! kdu that undoes kud over the picture, by least squares over a grid of its pixels.
@@ -233,24 +106,13 @@ bool liesOnItsBoard(const vpBoardSight &sight)
   if (sight.pixels.size() < fewest) {
     return true;
   }
-  std::vector<cv::Point2f> board, expected;
-  for (const cv::Point3f &point : sight.board) {
-    board.emplace_back(point.x, point.y);
-  }
-  const cv::Mat homography = cv::findHomography(board, sight.pixels);
-  if (homography.empty()) { // on a line: they tell nothing
-    return true;
-  }
-  cv::perspectiveTransform(board, expected, homography);
   const cv::Scalar mean = cv::mean(sight.pixels);
   const cv::Point2f middle(static_cast<float>(mean[0]), static_cast<float>(mean[1]));
-  double off = 0, spread = 0; // px^2
-  for (size_t i = 0; i < expected.size(); ++i) {
-    const cv::Point2f miss = sight.pixels[i] - expected[i], place = sight.pixels[i] - middle;
-    off += miss.dot(miss);
-    spread += place.dot(place);
+  double spread = 0; // px^2
+  for (const cv::Point2f &pixel : sight.pixels) {
+    spread += (pixel - middle).dot(pixel - middle);
   }
-  return off <= most * most * spread;
+  return square(sight.offPlane()) * static_cast<double>(sight.pixels.size()) <= square(most) * spread;
 }
 } // namespace
 
@@ -260,21 +122,7 @@ bool vpCameraCalibration::fit(const std::vector<vpBoardSight> &sights, unsigned 
   estimate = vpCameraEstimate();
   bool good = false;
   try {
-    Start start = startOf(model, sights, cv::Size(static_cast<int>(width), static_cast<int>(height)));
-    switch (model) {
-    case Model::perspective:
-      good = adjust<Model::perspective>(sights, start, estimate);
-      break;
-    case Model::visp:
-      good = adjust<Model::visp>(sights, start, estimate);
-      break;
-    case Model::kannalaBrandt:
-      good = adjust<Model::kannalaBrandt>(sights, start, estimate);
-      break;
-    case Model::opencv:
-      good = adjust<Model::opencv>(sights, start, estimate);
-      break;
-    }
+    good = vpFitCamera(model, sights, width, height, estimate);
   } catch (const cv::Exception &) { // points on one line and the like
     good = false;
   }

@@ -19,6 +19,13 @@ struct VISP_EXPORT vpBoardSight {
   std::string picture;             // name of the frame
   std::vector<cv::Point3f> board;  // m, z = 0
   std::vector<cv::Point2f> pixels; // centres at integers
+  double discRadius = 0;           // m, of the discs whose middles the points are, as it looks; 0: of none
+
+  //! From the board (m) to pixels, as if the lens had no distortion; all 0 where the points lie on a line.
+  cv::Matx33d homography() const;
+
+  //! Root mean square, px, of how far the points are off those of a flat board seen without distortion.
+  double offPlane() const;
 };
 
 //! A flat board that cameras are calibrated with.
