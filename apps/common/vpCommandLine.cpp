@@ -5,8 +5,10 @@
 #include "common/vpCommandLine.h"
 
 #include <algorithm>
-
+#include <charconv>
 #include <cmath>
+#include <limits>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <visp3/core/vpException.h>
@@ -21,6 +23,18 @@ namespace
 std::string notEmpty(const std::string &text)
 {
   return text.empty() ? "an empty name" : "";
+}
+
+//! What takes a whole number; CLI11 wraps -1 around and takes the largest for what is too large.
+auto wholeNumber(std::uint64_t least, std::uint64_t most, const std::string &expected)
+{
+  return [least, most, expected](const std::string &text) {
+    std::uint64_t number = 0;
+    const char *const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, number);
+    const bool good = end == last && error == std::errc() && number >= least && number <= most;
+    return good ? std::string() : vpShown(text) + ", expected a whole number " + expected;
+  };
 }
 } // namespace
 
@@ -47,6 +61,21 @@ void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,
     const bool known = std::find(choices.begin(), choices.end(), text) != choices.end();
     return known ? std::string() : vpOneLine(text) + ", expected " + names;
   });
+}
+
+CLI::Option *vpAddCount(CLI::App &app, const std::string &option, size_t &count, const std::string &help,
+                        size_t most)
+{
+  return app.add_option(option, count, help)
+      ->type_name("N")
+      ->check(wholeNumber(1, most, "from 1 to " + std::to_string(most)));
+}
+
+void vpAddSeed(CLI::App &app, const std::string &option, std::uint64_t &seed, const std::string &help)
+{
+  app.add_option(option, seed, help)
+      ->type_name("N")
+      ->check(wholeNumber(0, std::numeric_limits<std::uint64_t>::max(), "from 0 to 2^64 - 1"));
 }
 
 std::vector<double> vpNumbersOf(const std::string &option, const std::string &text, size_t count,

@@ -5,6 +5,7 @@
 #ifndef vpCommandLine_h
 #define vpCommandLine_h
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@
 namespace CLI
 {
 class App;
-}
+class Option;
+} // namespace CLI
 
 BEGIN_VISP_NAMESPACE
 
@@ -29,6 +31,13 @@ void vpAddNames(CLI::App &app, const std::string &option, std::vector<std::strin
 //! An option that takes one of a few words.
 void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,
                  const std::vector<std::string> &choices, const std::string &help);
+
+//! An option that takes a whole number from 1 to \e most.
+CLI::Option *vpAddCount(CLI::App &app, const std::string &option, size_t &count, const std::string &help,
+                        size_t most = 1000000000);
+
+//! An option that takes the seed of all that is left to chance.
+void vpAddSeed(CLI::App &app, const std::string &option, std::uint64_t &seed, const std::string &help);
 
 //! \e count finite numbers parted by commas. \throw vpException (badValue) that names \e option and \e
 //! expected.

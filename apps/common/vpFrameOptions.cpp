@@ -53,11 +53,10 @@ void vpFrameOptions::add(CLI::App &app)
   app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
   vpAddName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");
   camera.add(app);
-  app.add_option("--frames", most,
-                 ofCamera > 0 ? "take as many frames at most (default: all; of a camera " +
-                                    std::to_string(ofCamera) + ")"
-                              : "end after as many frames; default: where they end, or at Ctrl-C")
-      ->type_name("N");
+  vpAddCount(app, "--frames", most,
+             ofCamera > 0
+                 ? "take as many frames at most (default: all; of a camera " + std::to_string(ofCamera) + ")"
+                 : "end after as many frames; default: where they end, or at Ctrl-C");
 }
 
 void vpFrameOptions::check() const

@@ -141,6 +141,10 @@ void vpRunOptions::apply(vpLampBundle &bundle) const
       fail("--prior: " + vpShown(prior) + ", expected NAME=SIGMA, as u0=1");
     }
     const int i = parameter("--prior", prior.substr(0, equals));
+    if (bundle.rigSigma(i) == 0) {
+      fail("--prior " + vpShown(prior.substr(0, equals)) +
+           ": beside --fix of the same, expected one of them");
+    }
     const double sigma = vpPositiveOption("--prior " + prior.substr(0, equals), prior.substr(equals + 1));
     const bool angle = vpRigParameterInfo::all()[static_cast<size_t>(i)].unit == "deg";
     bundle.rigSigma(i) = angle ? sigma * M_PI / 180 : sigma;

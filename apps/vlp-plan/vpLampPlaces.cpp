@@ -4,8 +4,10 @@
  */
 #include "vpLampPlaces.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include <visp3/core/vpException.h>
@@ -42,7 +44,15 @@ vpLampPlaces vpLampPlaces::load(const std::string &filename, double diameter)
   const bool csv = std::filesystem::path(filename).extension() == ".csv";
   vpLampPlaces places;
   places.map = csv ? csvPlaces(filename) : vpLampMap::load(filename);
+  std::map<std::array<double, 3>, std::string> taken;
   for (vpLamp &lamp : places.map.lamps) {
+    const auto &[other, own] =
+        taken.emplace(std::array{lamp.position.x(), lamp.position.y(), lamp.position.z()}, lamp.id);
+    if (!own) {
+      throw vpException(vpException::badValue, filename + ": lamp " + vpShown(lamp.id) +
+                                                   ": position_m: where lamp " + vpShown(other->second) +
+                                                   " hangs, expected a place of its own");
+    }
     lamp.size = std::isnan(lamp.size) ? diameter : lamp.size;
     if (std::isnan(lamp.size)) {
       throw vpException(vpException::badValue,

@@ -203,7 +203,6 @@ void print(const Seen &seen, vpReportTable table)
 
 vpExitCode vpPlan(const vpPlanOptions &options)
 {
-  vpInterrupt::install();
   if (!options.check.empty()) {
     return vpPlanCheck(options);
   }
@@ -218,6 +217,7 @@ vpExitCode vpPlan(const vpPlanOptions &options)
   }
   if (!options.picture.empty()) {
     vpGnuplot::check();
+    vpInterrupt::install();             // from here on there is something to take away
     vpAtomicFile file(options.picture); // tells before the work whether it can be written
     const std::string bytes = vpPlanPicture(options, planner, seen.lines, choice.capacity);
     file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

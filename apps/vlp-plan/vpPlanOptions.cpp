@@ -121,12 +121,6 @@ void readNumber(const std::string &option, const std::string &text, double low, 
     fail(option + ": " + vpShown(text) + ", expected " + expected);
   }
 }
-
-CLI::Option *addCount(CLI::App &app, const std::string &option, size_t &count, const std::string &help)
-{
-  static const size_t most = 100000;
-  return app.add_option(option, count, help)->type_name("N")->check(CLI::Range(static_cast<size_t>(1), most));
-}
 } // namespace
 
 bool vpPlanOptions::parse(int argc, char **argv)
@@ -143,16 +137,16 @@ bool vpPlanOptions::parse(int argc, char **argv)
             "of the lamps, or side of square ones; of those without one in a map");
   vpAddName(app, "--oscillator", oscillator, "crystal|rc|PPM",
             "standard deviation of the lamps' clocks: 50 ppm (default), 10000 ppm, or as said");
-  addCount(app, "--lamps", lamps,
-           "how many identifiers to choose, as far apart as can be; default: all there are");
+  vpAddCount(app, "--lamps", lamps,
+             "how many identifiers to choose, as far apart as can be; default: all there are");
   vpAddName(app, "--error", wrong, "P", "probability of taking a lamp for another one; default 0.001");
   vpAddName(app, "--snr-db", snr, "DB", "stripes against the noise of a line; default 20, which is careful");
   vpAddName(app, "--duties", dutyList, "D,D,...", "that lamps may have; default 0.2,0.5,0.8");
   vpAddName(app, "--frequencies", frequencies, "FROM:TO",
             "Hz; default: from 3 stripes or 500 Hz to where exposure or rate of lines end it");
   vpAddName(app, "--place", place, "FILE", "where the lamps hang: a lamp map, or a CSV of positions");
-  addCount(app, "--reuse", reuse,
-           "identifiers for all lamps of --place, each on many of them; default: each lamp its own");
+  vpAddCount(app, "--reuse", reuse,
+             "identifiers for all lamps of --place, each on many of them; default: each lamp its own");
   vpAddName(app, "--view-radius", view, "M",
             "of what a picture shows of the ceiling, for --reuse; default: as the rig and the heights say");
   vpAddName(app, "--out", out, "FILE", "write the lamp map");
@@ -160,14 +154,15 @@ bool vpPlanOptions::parse(int argc, char **argv)
             "draw how many identifiers there are for lamps of any size");
   CLI::Option *const asWords = app.add_flag("--words", words, "plan words instead of frequencies");
   const std::vector<CLI::Option *> ofWords = {
-      addCount(app, "--bits", bits, "of a word, header included; default 14"),
+      vpAddCount(app, "--bits", bits, "of a word, header included; default 14"),
       app.add_option("--header", format.header, "bits that a word begins with; default 011110")
           ->type_name("BITS"),
       app.add_option("--chip-rate", chipRate, "Hz; default 8000")->type_name("HZ"),
-      addCount(app, "--chips-apart", apart, "in which two words differ at least, however turned; default 2")};
+      vpAddCount(app, "--chips-apart", apart,
+                 "in which two words differ at least, however turned; default 2")};
   vpAddChoice(app, "--code", code, {"manchester", "ook"}, "of the words; default manchester");
   vpAddName(app, "--check", check, "FILE", "judge this lamp map: the pairs most likely to be confused");
-  addCount(app, "--worst", worst, "how many pairs of --check to print; default 10");
+  vpAddCount(app, "--worst", worst, "how many pairs of --check to print; default 10");
   for (CLI::Option *const option : ofWords) {
     option->needs(asWords);
   }

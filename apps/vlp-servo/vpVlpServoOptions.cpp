@@ -97,7 +97,7 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   vpAddName(app, "--robot", robot, "ROBOT", "sim, opencr:usb or opencr:DEVICE");
   app.add_flag("--list-robots", listRobots, "print the boards that are attached by USB, and end");
   vpAddName(app, "--scenario", scenario, "FILE", "sim: the world, see data/scenarios/servo.yaml");
-  app.add_option("--seed", seed, "sim: of all that is left to chance (default 1)")->type_name("N");
+  vpAddSeed(app, "--seed", seed, "sim: of all that is left to chance (default 1)");
   app.add_flag("--typical", typical, "sim: draw the errors of a typical rig, unknown to the robot");
   app.add_flag("--wheels-only", wheelsOnly,
                "sim: the odometry's turns from the wheels, whatever the scenario says");
@@ -110,9 +110,8 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   vpAddName(app, "--path", pathFile, "FILE", "the path to drive, see data/paths");
   vpAddName(app, "--speed", speed, "M/S", "along the path (default 0.1)");
   vpAddName(app, "--gain", gain, "1/S", "lambda of the visual task for small errors (default 2.5)");
-  app.add_option("--laps", loop.follower.reference.laps, "of a closed path (default 1)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  size_t laps = loop.follower.reference.laps;
+  vpAddCount(app, "--laps", laps, "of a closed path (default 1)", 1000000);
   vpAddName(app, "--start", startText, "X,Y,YAW_DEG",
             "where the robot stands (m); default: on the path's start");
   vpAddName(app, "--fence", fence, "X1,Y1,X2,Y2",
@@ -125,6 +124,7 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   if (!vpParseCommandLine(app, argc, argv)) {
     return false;
   }
+  loop.follower.reference.laps = static_cast<unsigned int>(laps);
   if (listRobots) {
     return true;
   }

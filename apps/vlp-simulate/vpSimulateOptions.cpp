@@ -2,8 +2,6 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#include <charconv>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <visp3/core/vpException.h>
@@ -35,16 +33,6 @@ The folder appears whole, at the end. Ctrl-C ends the work and keeps the frames 
 
 Exit code: 0 done; 2 bad usage or bad input.
 )";
-
-//! What is wrong with the text of a seed; empty where nothing is.
-std::string seedProblem(const std::string &text)
-{
-  std::uint64_t seed = 0;
-  const char *const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, seed);
-  return end == last && error == std::errc() ? ""
-                                             : vpShown(text) + ", expected a whole number from 0 to 2^64 - 1";
-}
 } // namespace
 
 bool vpSimulateOptions::parse(int argc, char **argv)
@@ -54,15 +42,11 @@ bool vpSimulateOptions::parse(int argc, char **argv)
   app.get_formatter()->column_width(28);
   vpAddName(app, "--scenario", scenario, "FILE", "what to draw");
   vpAddName(app, "--out", out, "DIR", "the run folder to make; new, or empty");
-  app.add_option("--seed", seed, "what is left to chance; default 1")
-      ->type_name("N")
-      ->check(seedProblem); // CLI11 wraps -1 around and takes the largest for what is too large
+  vpAddSeed(app, "--seed", seed, "what is left to chance; default 1");
   vpAddChoice(app, "--format", format, {"png", "pgm"},
               "of the pictures; pgm is quicker and larger; default png");
-  app.add_option("--frames", frames, "only the first N frames")->type_name("N")->check(CLI::PositiveNumber);
-  app.add_option("--every", every, "only every N-th frame of the camera")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  vpAddCount(app, "--frames", frames, "only the first N frames");
+  vpAddCount(app, "--every", every, "only every N-th frame of the camera");
   app.add_flag(
       "--typical", typical,
       "draw the errors of a typical rig, unknown to the robot: camera and lamps off by 0.15 degree of roll "

@@ -91,6 +91,8 @@ TEST_F(VlpCalibrate, RefusesBadUsageInOneLine)
   expectRefused({"mount", "--run", folder / "none"}, badInput, {"rig.yaml"});
   expectRefused({"mount", "--run", run(), "--fix", "u7"}, badInput, {"--fix", "u7", "u0"});
   expectRefused({"mount", "--run", run(), "--prior", "u0"}, badInput, {"--prior", "NAME=SIGMA"});
+  expectRefused({"mount", "--run", run(), "--fix", "z", "--prior", "z=1"}, badInput,
+                {"--prior z: beside --fix of the same"});
   expectRefused({"mount", "--run", run(), "--motion", "places"}, badInput, {"--places"});
   expectRefused({"lamps", "--run", run()}, badInput, {"--measured", "two or more"});
   expectRefused({"lamps", "--run", run(), "--measured", "LED1,LED9"}, badInput,

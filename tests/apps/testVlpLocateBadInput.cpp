@@ -233,6 +233,7 @@ TEST(VlpLocateBadInput, BadUsage)
   expectOneLine({"--rig", rig[1], "--image", picture}, badInput, {"--lamps"});
   expectOneLine(with(good, {"--run", folder.path()}), badInput, {"more than one source"});
   expectOneLine(with(good, {"--nonsense"}), badInput, {"--nonsense"});
+  expectOneLine(with(good, {"--frames", "0"}), badInput, {"--frames: 0, expected a whole number from 1"});
   expectOneLine({"a.png"}, badInput, {"a.png"});
   expectOneLine(with(good, {"--solver", "three"}), badInput, {"--solver: three", "all|two"});
   expectOneLine(with(good, {"--attitude", ""}), badInput, {"--attitude", "mount|free"});

@@ -288,5 +288,8 @@ TEST_F(VlpPlan, BadFilesAreOneClearLine)
   expectOneLine({"--rig", rig, "--place", low}, badInput, {"--diameter: nothing, expected", "lamp A"});
   expectOneLine({"--rig", rig, "--place", low, "--diameter", "0.1"}, badInput,
                 {"low.csv: lamp A: -0.09 m above the camera"});
+  const std::string one = folder.write("one.csv", "id,x_m,y_m,z_m\nA,0,1,2\nB,0,1,2\n");
+  expectOneLine({"--rig", rig, "--place", one, "--diameter", "0.1"}, badInput,
+                {"one.csv: lamp B: position_m: where lamp A hangs"});
   expectOneLine(with({"--lamps", "3", "--out", "/proc/none/lamps.yaml"}), badInput, {"/proc/none"});
 }

@@ -154,6 +154,7 @@ TEST(VlpServo, BadUsage)
   expectOneLine(with(good, {"--speed", "fast"}), {"--speed: fast"});
   expectOneLine(with(good, {"--gain", "-1"}), {"--gain: -1"});
   expectOneLine(with(good, {"--laps", "0"}), {"--laps"});
+  expectOneLine(with(good, {"--seed", "-1"}), {"--seed: -1, expected a whole number"});
   expectOneLine(with(good, {"--start", "1,2"}), {"--start: 1,2", "x,y,yaw"});
   expectOneLine(with(good, {"--fence", "1,0,0,1"}), {"--fence: 1,0,0,1"});
   expectOneLine(with(good, {"--open-loop", "--odometry-only"}), {"--open-loop"});

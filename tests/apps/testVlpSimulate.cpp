@@ -272,6 +272,7 @@ TEST(VlpSimulate, BadUsage)
   expectOneLine(with(good, {"--seed", "18446744073709551616"}), {"--seed"});
   expectOneLine(with(good, {"--frames", "0"}), {"--frames"});
   expectOneLine(with(good, {"--frames", "-3"}), {"--frames"});
+  expectOneLine(with(good, {"--every", "0"}), {"--every: 0, expected a whole number from 1 to"});
   expectOneLine(with(good, {"--format", "gif"}), {"--format: gif", "png"});
   expectOneLine(with(good, {"--nonsense"}), {"--nonsense"});
   expectOneLine({"--scenario", "", "--out", run}, {"--scenario"});

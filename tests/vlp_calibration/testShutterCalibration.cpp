@@ -128,6 +128,20 @@ TEST(ShutterCalibration, LampsOfOtherFrequenciesAreNoWitnesses)
   EXPECT_NE(found.refusal.find("--lamps"), std::string::npos) << found.refusal;
 }
 
+TEST(ShutterCalibration, ARowTimeThatNoCameraHasIsRefused)
+{
+  vpSimulation world = simulation(2);
+  vpLampMap quick = world.map();
+  for (vpLamp &lamp : quick.lamps) {
+    lamp.modulation.frequency *= 1e6;
+  }
+  vpVlpRig rig = world.rig();
+  rig.shutter.rowTime *= 1e-6;
+  const vpShutterEstimate found = fromTwoFrames(world, rig, quick);
+  EXPECT_FALSE(found.valid);
+  EXPECT_NE(found.refusal.find("expected 1e-07 to 0.01 s"), std::string::npos) << found.refusal;
+}
+
 // Each of two lamps says another row time: a vague guess does not choose.
 TEST(ShutterCalibration, OneWrongFrequencyOfTwoIsRefused)
 {

@@ -270,6 +270,8 @@ TEST(CameraXml, BadFilesAreRefusedWithFileLineAndField)
        {"camera.xml:7: camera 'UB300'.model.py: 0, expected a number above 0"}},
       {with(xml, "<u0>417", "<u0>nan"),
        {"camera.xml:7: camera 'UB300'.model.u0: nan, expected a finite number"}},
+      {with(xml, "<v0>341", "<v0>-100341"),
+       {"camera.xml:7: camera 'UB300'.model.v0: -100341, expected pixels, from -100000 to 100000"}},
       {with(xml, "<v0>341</v0>", ""), {"camera.xml:6: camera 'UB300'.model.v0: missing"}},
       {with(xml, "<v0>341</v0>", "<v0>1</v0><v0>1</v0>"), {"camera.xml:7: camera 'UB300'.model.v0: twice"}},
       {with(xml, "<v0>341</v0>", "<v0>341</v0><k1>0</k1>"),

@@ -321,6 +321,13 @@ vpShutterEstimate vpShutterCalibration::solve() const
   if (!estimate.refusal.empty()) {
     return estimate;
   }
+  static const double shortest = 1e-7, longest = 1e-2; // s: no camera is that quick, nor that slow
+  if (!(rowTime > shortest && rowTime < longest)) {
+    estimate.refusal = "the stripes tell a row time of " + vpNumberText(rowTime) + " s, expected " +
+                       vpNumberText(shortest) + " to " + vpNumberText(longest) +
+                       " s; see that the lamps' frequency_hz is what they blink at";
+    return estimate;
+  }
   std::vector<size_t> lamps;
   estimate.sights = sightsAt(rowTime, best.stripes, lamps);
   average(estimate, lamps);

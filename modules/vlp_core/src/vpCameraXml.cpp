@@ -134,6 +134,17 @@ struct Element {
     return static_cast<unsigned int>(value);
   }
 
+  //! A pixel of any sensor, of which the picture may be a region.
+  double coordinate(const std::string &wanted) const
+  {
+    const double value = number(wanted, false);
+    if (std::abs(value) > mostPixels) {
+      child(wanted).fail(vpShown(child(wanted).text()) + ", expected pixels, from -" +
+                         std::to_string(mostPixels) + " to " + std::to_string(mostPixels));
+    }
+    return value;
+  }
+
   void refuseOthers(const std::vector<std::string> &allowed) const
   {
     for (const Element &element : children()) {
@@ -203,8 +214,8 @@ vpCameraParameters parameters(const Element &model)
 
   const double px = model.number("px", true);
   const double py = model.number("py", true);
-  const double u0 = model.number("u0", false);
-  const double v0 = model.number("v0", false);
+  const double u0 = model.coordinate("u0");
+  const double v0 = model.coordinate("v0");
   std::vector<double> distortion;
   for (const std::string &coefficient : found->distortion) {
     distortion.push_back(model.number(coefficient, false));
