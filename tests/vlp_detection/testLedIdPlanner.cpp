@@ -184,6 +184,16 @@ TEST(LedIdPlanner, IdentifiersAreAsFarApartAsStated)
   }
 }
 
+//! Where doubt peaks between the frequencies at which it is looked at: 250 lines of this rig.
+TEST(LedIdPlanner, WhatIsNotToldApartIsLeftOut)
+{
+  const vpLedIdPlanner planner(rigOf(resized));
+  const vpLedIdPlan fewer = planner.largest(230, crystal), plan = planner.largest(250, crystal);
+  EXPECT_LE(plan.error, planner.maxError);
+  EXPECT_GE(plan.acceptance, planner.minAcceptance);
+  EXPECT_GT(plan.identifiers.size(), fewer.identifiers.size());
+}
+
 TEST(LedIdPlanner, FewerLampsAreFartherApart)
 {
   const vpLedIdPlanner planner(rigOf(resized));

@@ -40,23 +40,9 @@ std::vector<vpModulation> most(const vpFrequencyRows &rows, const vpLedIdPlanner
   return best;
 }
 
-bool isGood(const vpLedIdPlan &plan, const vpLedIdPlanner &planner)
+bool isGood(double error, double acceptance, const vpLedIdPlanner &planner)
 {
-  return plan.error <= planner.maxError && plan.acceptance >= planner.minAcceptance;
-}
-
-//! The same, judged. A lamp of much doubt has many neighbours in duty, so the first share may be too large.
-vpLedIdPlan mostGood(vpFrequencyRows &rows, const vpLedIdPlanner &planner, double lines, double oscillatorPpm)
-{
-  rows.setOscillator(oscillatorPpm);
-  vpLedIdPlan plan;
-  for (double ofDuty = 0.1; ofDuty > 1e-4; ofDuty *= 0.3) {
-    plan = planner.judged(most(rows, planner, ofDuty), lines, oscillatorPpm);
-    if (isGood(plan, planner)) {
-      break;
-    }
-  }
-  return plan;
+  return error <= planner.maxError && acceptance >= planner.minAcceptance;
 }
 
 struct Placed {
@@ -64,10 +50,128 @@ struct Placed {
   vpStripeDoubt doubt;
 };
 
+//! In standard deviations; 0 of lamps whose stripes tell nothing.
 double distanceOf(const Placed &a, const Placed &b)
 {
-  return std::hypot((a.lamp->frequency - b.lamp->frequency) / std::max(a.doubt.frequency, b.doubt.frequency),
-                    (*a.lamp->duty - *b.lamp->duty) / std::max(a.doubt.duty, b.doubt.duty));
+  const double distance =
+      std::hypot((a.lamp->frequency - b.lamp->frequency) / std::max(a.doubt.frequency, b.doubt.frequency),
+                 (*a.lamp->duty - *b.lamp->duty) / std::max(a.doubt.duty, b.doubt.duty));
+  return std::isnan(distance) ? 0 : distance;
+}
+
+//! A plan with what may become of each of its lamps.
+class Judgement
+{
+public:
+  Judgement(const vpLedIdPlanner &planner, std::vector<vpModulation> identifiers, double lines,
+            double oscillatorPpm);
+
+  bool good() const { return isGood(plan.error, plan.acceptance, *m_planner); }
+  //! The lamps but for those that fall short, of neighbours the worst alone.
+  std::vector<vpModulation> others() const;
+
+  vpLedIdPlan plan;
+
+private:
+  const vpLedIdPlanner *m_planner;
+  double m_largestDoubt = 0;           // Hz
+  std::vector<double> m_wrong, m_none; // probabilities: another one's id, no id
+
+  static constexpr double m_far = 14; // standard deviations, from where on a neighbour does no harm
+};
+
+Judgement::Judgement(const vpLedIdPlanner &planner, std::vector<vpModulation> identifiers, double lines,
+                     double oscillatorPpm)
+    : m_planner(&planner)
+{
+  plan.identifiers = std::move(identifiers);
+  std::sort(plan.identifiers.begin(), plan.identifiers.end(),
+            [](const vpModulation &a, const vpModulation &b) {
+              return std::make_pair(a.frequency, *a.duty) < std::make_pair(b.frequency, *b.duty);
+            });
+  std::vector<Placed> placed;
+  for (const vpModulation &lamp : plan.identifiers) {
+    placed.push_back({&lamp, planner.prediction.doubt(lamp, lines, oscillatorPpm)});
+    m_largestDoubt = std::max(m_largestDoubt, placed.back().doubt.frequency);
+  }
+  const double odds = std::log(planner.minConfidence / (1 - planner.minConfidence));
+  m_wrong.assign(placed.size(), 0);
+  m_none.assign(placed.size(), planner.refusedByGates());
+  for (size_t i = 0; i < placed.size(); ++i) {
+    for (size_t j = i + 1; j < placed.size(); ++j) {
+      const double along = (placed[j].lamp->frequency - placed[i].lamp->frequency) / m_largestDoubt;
+      if (along > std::max(m_far, std::min(plan.separation, 1e6))) {
+        break;
+      }
+      const double distance = distanceOf(placed[i], placed[j]);
+      plan.separation = std::min(plan.separation, distance);
+      const double wrong = vpNormalTail(0.5 * distance);
+      const double doubtful = distance > 0 ? vpNormalTail(0.5 * distance - odds / distance) : 1;
+      for (const size_t k : {i, j}) {
+        m_wrong[k] += wrong;
+        m_none[k] += doubtful;
+      }
+    }
+  }
+  if (!placed.empty()) {
+    plan.error = std::min(1.0, *std::max_element(m_wrong.begin(), m_wrong.end()));
+    plan.acceptance = std::max(0.0, 1 - *std::max_element(m_none.begin(), m_none.end()));
+  }
+}
+
+std::vector<vpModulation> Judgement::others() const
+{
+  std::vector<size_t> worstFirst;
+  for (size_t i = 0; i < m_wrong.size(); ++i) {
+    if (!isGood(m_wrong[i], 1 - m_none[i], *m_planner)) {
+      worstFirst.push_back(i);
+    }
+  }
+  const auto shortfall = [this](size_t i) {
+    return std::max(m_wrong[i] / m_planner->maxError, m_none[i] / (1 - m_planner->minAcceptance));
+  };
+  std::stable_sort(worstFirst.begin(), worstFirst.end(),
+                   [&](size_t a, size_t b) { return shortfall(a) > shortfall(b); });
+  std::vector<bool> out(m_wrong.size(), false);
+  std::vector<double> gone; // Hz
+  for (const size_t i : worstFirst) {
+    const double frequency = plan.identifiers[i].frequency;
+    if (std::none_of(gone.begin(), gone.end(),
+                     [&](double other) { return std::abs(other - frequency) < m_far * m_largestDoubt; })) {
+      out[i] = true;
+      gone.push_back(frequency);
+    }
+  }
+  std::vector<vpModulation> left;
+  for (size_t i = 0; i < out.size(); ++i) {
+    if (!out[i]) {
+      left.push_back(plan.identifiers[i]);
+    }
+  }
+  return left;
+}
+
+/*!
+  The same, judged. A lamp of much doubt has many neighbours in duty, so the first share may be too large; and
+  doubt may peak between the frequencies at which the rows know it: then those are left out whom it concerns.
+*/
+vpLedIdPlan mostGood(vpFrequencyRows &rows, const vpLedIdPlanner &planner, double lines, double oscillatorPpm)
+{
+  rows.setOscillator(oscillatorPpm);
+  vpLedIdPlan best;
+  for (double ofDuty = 0.1; ofDuty > 1e-4; ofDuty *= 0.3) {
+    Judgement judgement(planner, most(rows, planner, ofDuty), lines, oscillatorPpm);
+    if (judgement.good()) {
+      return judgement.plan;
+    }
+    while (!judgement.good() && judgement.plan.identifiers.size() > best.identifiers.size()) {
+      judgement = Judgement(planner, judgement.others(), lines, oscillatorPpm);
+    }
+    if (judgement.plan.identifiers.size() > best.identifiers.size()) {
+      best = std::move(judgement.plan);
+    }
+  }
+  return best;
 }
 } // namespace
 
@@ -172,7 +276,8 @@ vpLedIdPlan vpLedIdPlanner::spread(double lines, double oscillatorPpm, size_t co
   }
   best.resize(std::min(best.size(), count));
   const vpLedIdPlan plan = judged(best, lines, oscillatorPpm);
-  if (!isGood(plan, *this)) { // near the limit, where duty needs more room than frequency
+  if (!isGood(plan.error, plan.acceptance,
+              *this)) { // near the limit, where duty needs more room than frequency
     std::vector<vpModulation> all = mostGood(rows, *this, lines, oscillatorPpm).identifiers;
     if (all.size() >= count) {
       all.resize(count);
@@ -185,42 +290,7 @@ vpLedIdPlan vpLedIdPlanner::spread(double lines, double oscillatorPpm, size_t co
 vpLedIdPlan vpLedIdPlanner::judged(std::vector<vpModulation> identifiers, double lines,
                                    double oscillatorPpm) const
 {
-  vpLedIdPlan plan;
-  plan.identifiers = std::move(identifiers);
-  std::sort(plan.identifiers.begin(), plan.identifiers.end(),
-            [](const vpModulation &a, const vpModulation &b) {
-              return std::make_pair(a.frequency, *a.duty) < std::make_pair(b.frequency, *b.duty);
-            });
-  std::vector<Placed> placed;
-  double largestDoubt = 0;
-  for (const vpModulation &lamp : plan.identifiers) {
-    placed.push_back({&lamp, prediction.doubt(lamp, lines, oscillatorPpm)});
-    largestDoubt = std::max(largestDoubt, placed.back().doubt.frequency);
-  }
-  static const double far = 14; // standard deviations, from where on a neighbour does no harm
-  const double odds = std::log(minConfidence / (1 - minConfidence));
-  std::vector<double> error(placed.size(), 0), refused(placed.size(), refusedByGates());
-  for (size_t i = 0; i < placed.size(); ++i) {
-    for (size_t j = i + 1; j < placed.size(); ++j) {
-      const double along = (placed[j].lamp->frequency - placed[i].lamp->frequency) / largestDoubt;
-      if (along > std::max(far, std::min(plan.separation, 1e6))) {
-        break;
-      }
-      const double distance = distanceOf(placed[i], placed[j]);
-      plan.separation = std::min(plan.separation, distance);
-      const double wrong = vpNormalTail(0.5 * distance);
-      const double doubtful = distance > 0 ? vpNormalTail(0.5 * distance - odds / distance) : 1;
-      for (const size_t k : {i, j}) {
-        error[k] += wrong;
-        refused[k] += doubtful;
-      }
-    }
-  }
-  if (!placed.empty()) {
-    plan.error = std::min(1.0, *std::max_element(error.begin(), error.end()));
-    plan.acceptance = std::max(0.0, 1 - *std::max_element(refused.begin(), refused.end()));
-  }
-  return plan;
+  return Judgement(*this, std::move(identifiers), lines, oscillatorPpm).plan;
 }
 
 END_VISP_NAMESPACE
