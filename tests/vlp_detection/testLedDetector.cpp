@@ -243,6 +243,30 @@ TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
   EXPECT_LT((seen->point - painted.lamps[0].centre).norm(), 0.5);
 }
 
+//! Their region holds both, and what is found in its parts may be the same lamp.
+TEST(LedDetector, LampsThatPassEachOtherAreSeenOnce)
+{
+  vpLampPicture passing = picture();
+  int named = 0;
+  for (int step = 0; step < 120; ++step) {
+    passing.lamps = {lamp(180, 150, 2000), lamp(222 + 0.2 * step, 120 + 0.5 * step, 2600)};
+    passing.lamps[0].phase = 0.083 * step;
+    passing.lamps[1].phase = 0.047 * step;
+    vpLedDetector detector(vpUpwardRig(passing.width, passing.height), map());
+    detector.detect(passing.render());
+    std::vector<std::string> ids;
+    for (const vpLampObservation &seen : detector.observations()) {
+      if (!seen.id.empty()) {
+        ids.push_back(seen.id);
+      }
+    }
+    named += static_cast<int>(ids.size());
+    std::sort(ids.begin(), ids.end());
+    EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end()) << "step " << step;
+  }
+  EXPECT_GT(named, 120);
+}
+
 TEST(LedDetector, RefusesAPictureOfAnotherSize)
 {
   vpLedDetector detector(vpUpwardRig(400, 320), map());

@@ -217,6 +217,22 @@ TEST(VlpLocalizer, LampAndReflectionThatFitAlikeCountForNeither)
   }
 }
 
+//! The pose of the frame before decides between two places for a robot that is followed, and only then.
+TEST(VlpLocalizer, FramesByThemselvesTakeNoHint)
+{
+  Room room;
+  Room alike = room;
+  alike.lamps.erase(alike.lamps.begin() + 2);
+  alike.lamps.pop_back();
+  alike.lamps.push_back({"reflection of A", {0.4, 0.5, 1.6}, alike.lamps[0].frequency});
+  vpVlpLocalizer localizer(room.rig(), room.map);
+  localizer.tracking = false;
+  ASSERT_TRUE(localizer.process(room.frame()).fix.valid);
+  const vpVlpLocation location = localizer.process(alike.frame());
+  EXPECT_FALSE(location.fix.valid);
+  EXPECT_NE(location.fix.refusal.find("2 places"), std::string::npos) << location.fix.refusal;
+}
+
 TEST(VlpLocalizer, FreeAttitudeLeavesOutAnIdSeenTwice)
 {
   Room room;

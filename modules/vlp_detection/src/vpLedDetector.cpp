@@ -132,6 +132,29 @@ bool alike(const vpLampObservation &a, const vpLampObservation &b)
          a.candidates.front().identifier == b.candidates.front().identifier;
 }
 
+cv::Rect2d boxOf(const vpLampOutline &outline)
+{
+  const Eigen::Vector4d box = outline.box();
+  return {box(0), box(1), box(2) - box(0), box(3) - box(1)};
+}
+
+/*!
+  Whether a region shows what another one shows better: it led to the same outline, or blinks alike and has
+  its middle in the other.
+*/
+bool isPartOf(const vpLampObservation &part, const vpLampObservation &whole)
+{
+  const vpLampOutline &a = part.outline, &b = whole.outline;
+  if (a.shape == vpLampOutline::Shape::region || b.shape == vpLampOutline::Shape::region ||
+      a.centreCovariance.trace() < b.centreCovariance.trace()) {
+    return false;
+  }
+  static const double most = 0.7; // of both together that they have in common
+  const cv::Rect2d box = boxOf(a), other = boxOf(b);
+  return (a.shape == b.shape && (box & other).area() > most * (box | other).area()) ||
+         (alike(part, whole) && other.contains({a.centre.x(), a.centre.y()}));
+}
+
 //! How the map's words are sent, each way once.
 std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter &shutter)
 {
@@ -287,27 +310,35 @@ bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> 
 }
 
 /*!
-  Regions that touch and blink as one lamp are pieces of it: a glow has no outline that would say so.
+  Regions that touch and blink as one lamp are pieces of it: a glow has no outline that would say so. Of a
+  lamp that was found in both, that which is known better stays.
 */
 bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois)
 {
   bool any = false;
   for (size_t i = 0; i < rois.size(); ++i) {
     for (size_t k = i + 1; k < rois.size(); ++k) {
-      if (!alike(m_observations[i], m_observations[k]) || (rois[i].box & rois[k].box).area() == 0) {
-        continue;
-      }
-      const vpLedRoi whole = joined(rois[i], rois[k]);
-      vpLampObservation lamp = observe(picture, whole);
-      recognizer.recognize(lamp);
-      if (alike(lamp, m_observations[i])) {
-        any = true;
+      vpLampObservation &one = m_observations[i], &other = m_observations[k];
+      if (isPartOf(one, other)) {
+        std::swap(one, other);
+        std::swap(rois[i], rois[k]);
+      } else if (!isPartOf(other, one)) {
+        if (!alike(one, other) || (rois[i].box & rois[k].box).area() == 0) {
+          continue;
+        }
+        const vpLedRoi whole = joined(rois[i], rois[k]);
+        vpLampObservation lamp = observe(picture, whole);
+        recognizer.recognize(lamp);
+        if (!alike(lamp, one)) {
+          continue;
+        }
         rois[i] = whole;
-        m_observations[i] = lamp;
-        rois.erase(rois.begin() + static_cast<long>(k));
-        m_observations.erase(m_observations.begin() + static_cast<long>(k));
-        --k;
+        one = lamp;
       }
+      any = true;
+      rois.erase(rois.begin() + static_cast<long>(k));
+      m_observations.erase(m_observations.begin() + static_cast<long>(k));
+      --k;
     }
   }
   return any;

@@ -237,7 +237,7 @@ vpLampMatch vpVlpLocalizer::matchByPlace(const std::vector<vpLampObservation> &o
     return match;
   }
   std::optional<vpPoseHint> hint;
-  if (m_lastPose) {
+  if (tracking && m_lastPose) {
     const double since = std::abs(time - m_lastPose->time);
     hint = vpPoseHint{m_lastPose->fix.wMb, hintReach + maxSpeed * since, hintTurn + maxTurnRate * since};
   }

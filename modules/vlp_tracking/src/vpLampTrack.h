@@ -19,6 +19,7 @@ struct vpLampTracker::Track {
   vpLedIdEvidence evidence;
   vpRect window;       // px, where it is expected in the frame at hand
   double seenLast = 0; // s
+  vpRect told;         // px, where it blinked last
   bool taken = false;  // by an observation of the frame at hand
   vpRect place;        // px, where it was seen last
   bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
@@ -28,6 +29,8 @@ struct vpLampTracker::Track {
   vpLampObservation seen;          // by a glance,
   bool found = false;              // where it was expected
 
+  //! Whether a region far from where it blinked last tells too little of its own to be the same lamp.
+  bool isElsewhere(const vpLampObservation &lamp) const;
   //! \param enough Frames that agree on it.
   void learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence);
   void remember(const vpImage<unsigned char> &I);

@@ -205,6 +205,7 @@ void vpLampTracker::assign()
 void vpLampTracker::followGlanced(Track &track, vpLampObservation &seen, const vpVlpFrame &frame)
 {
   track.seenLast = frame.timestamp;
+  track.told = boxOf(seen.outline);
   setRight(track, seen, frame);
 }
 
@@ -212,10 +213,15 @@ void vpLampTracker::followGlanced(Track &track, vpLampObservation &seen, const v
 void vpLampTracker::follow(Track &track, vpLampObservation &seen, const vpVlpFrame &frame)
 {
   if (blinks(seen)) {
+    if (track.isElsewhere(seen)) {
+      track.evidence.clear();
+      track.number = ++m_born;
+    }
     const bool tells = !m_again || !track.evidence.agrees(seen.features);
     if (tells && !track.evidence.add(seen.features)) {
       track.number = ++m_born; // another lamp in its place
     }
+    track.told = boxOf(seen.outline);
     // What tells nothing may be any part of this lamp and of others before it: old evidence is none of it.
     if (vpLedIdEvidence::tells(seen.features)) {
       const double area = seen.features.area;
@@ -278,7 +284,7 @@ void vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
   track.number = ++m_born;
   track.evidence.add(seen.features);
   track.seenLast = frame.timestamp;
-  track.window = track.place = box;
+  track.window = track.place = track.told = box;
   track.taken = true;
   seen.track = track.number;
   m_tracks.push_back(std::move(track));
