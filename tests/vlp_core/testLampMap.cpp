@@ -215,6 +215,7 @@ TEST(LampMap, BadFilesAreRefusedWithFileLineAndField)
       {id + at + "frequency_hz: -5", {":4: lamps[0].frequency_hz: -5, expected a number above 0"}},
       {id + at + "frequency_hz: .inf", {":4: lamps[0].frequency_hz: .inf, expected a number above 0"}},
       {id + at + "frequency_hz: 1e999", {":4: lamps[0].frequency_hz: 1e999, expected a number above 0"}},
+      {id + at + "frequency_hz: 1e12", {":4: lamps[0].frequency_hz: 1e+12, expected Hz, at most 1e+06"}},
       {id + at + "frequency_hz: 2 kHz", {":4: lamps[0].frequency_hz: 2 kHz, expected a number above 0"}},
       {start + "oscillator_ppm: -1", {":5: lamps[0].oscillator_ppm: -1, expected a number of 0 or more"}},
       {start + "position_sigma_m: -0.1",

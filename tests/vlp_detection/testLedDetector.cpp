@@ -5,6 +5,7 @@
 // The detector as a whole: from a picture to named lamps.
 
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_detection/vpLedDetector.h>
@@ -241,6 +242,37 @@ TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
   ASSERT_NE(seen, nullptr);
   EXPECT_GT(seen->saturated, 0.3);
   EXPECT_LT((seen->point - painted.lamps[0].centre).norm(), 0.5);
+}
+
+//! Clipped stripes seem longer and lie elsewhere; what is said of them is as uncertain as that.
+TEST(LedDetector, ClippedStripesAreAsUncertainAsTheyAre)
+{
+  double frequency = 0, duty = 0, most = 0; // squares of normalised errors
+  int count = 0;
+  for (int phase = 0; phase < 40; ++phase) {
+    vpLampPicture painted = picture();
+    painted.exposure = 100e-6;
+    painted.lamps.resize(1);
+    painted.lamps[0].frequency = 2000 + 61.7 * phase;
+    painted.lamps[0].phase = phase / 40.0;
+    painted.lamps[0].amplitude = 700;
+    vpLedDetector detector(vpUpwardRig(400, 320), map());
+    detector.detect(painted.render());
+    if (detector.observations().size() != 1 || !(detector.observations()[0].saturated > 0.4) ||
+        !std::isfinite(detector.observations()[0].features.frequency)) {
+      continue;
+    }
+    const vpStripeFeatures &seen = detector.observations()[0].features;
+    ++count;
+    const double off = (seen.frequency - painted.lamps[0].frequency) / seen.frequencySigma;
+    frequency += off * off;
+    most = std::max(most, std::abs(off));
+    duty += std::pow((seen.duty - 0.5) / seen.dutySigma, 2);
+  }
+  ASSERT_GT(count, 20);
+  EXPECT_LT(std::sqrt(frequency / count), 1.5);
+  EXPECT_LT(most, 5);
+  EXPECT_LT(std::sqrt(duty / count), 2);
 }
 
 //! Their region holds both, and what is found in its parts may be the same lamp.

@@ -38,10 +38,21 @@ void readShape(const vpYamlNode &node, vpLamp &lamp)
   lamp.yaw = node.number("yaw_deg", Range::any, 0) * M_PI / 180;
 }
 
+//! Of pulses or chips, Hz.
+double rateOf(const vpYamlNode &node, const std::string &key)
+{
+  static const double most = 1e6; // twice what a picture with a line each microsecond could show
+  const double rate = node.number(key, Range::positive);
+  if (rate > most) {
+    node.fail(key, vpNumberText(rate) + ", expected Hz, at most " + vpNumberText(most));
+  }
+  return rate;
+}
+
 void readPulses(const vpYamlNode &node, vpModulation &modulation)
 {
   modulation.kind = vpModulation::Kind::pwm;
-  modulation.frequency = node.number("frequency_hz", Range::positive);
+  modulation.frequency = rateOf(node, "frequency_hz");
   if (node.has("duty")) {
     modulation.duty = node.number("duty", Range::openUnit);
   }
@@ -65,7 +76,7 @@ void readWord(const vpYamlNode &node, vpModulation &modulation)
 {
   modulation.kind = vpModulation::Kind::word;
   modulation.bits = node.text("bits");
-  modulation.chipRate = node.number("chip_rate_hz", Range::positive);
+  modulation.chipRate = rateOf(node, "chip_rate_hz");
   modulation.code = node.choice("code", {"manchester", "ook"}) == 0 ? vpModulation::Code::manchester
                                                                     : vpModulation::Code::ook;
   const std::string &bits = modulation.bits;

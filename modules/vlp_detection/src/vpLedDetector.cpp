@@ -125,6 +125,28 @@ void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObserv
   lamp.saturated = pixels > 0 ? static_cast<double>(white) / pixels : 0;
 }
 
+/*!
+  Stripes that the grey scale cuts off seem longer, and their edges lie where it ends: what is known of them
+  is less certain than their noise says, and no frame to come makes it better.
+*/
+void doubtClipped(vpLampObservation &lamp)
+{
+  static const double harmless = 0.3,
+                      steep = 6; // share of the lit pixels; times as uncertain, for each share
+  const double times = 1 + steep * std::max(0.0, lamp.saturated - harmless);
+  vpStripeFeatures &features = lamp.features;
+  if (std::isnan(features.frequencyNoise)) {
+    features.frequencyNoise = features.frequencySigma;
+  }
+  static const double ofDuty = 0.2; // of that share
+  features.dutySigma = std::hypot(features.dutySigma, ofDuty * lamp.saturated);
+  features.frequencySigma *= times;
+  features.frequencyBound *= times;
+  for (vpDutySlice &slice : features.alongDuty) {
+    slice.frequencySigma *= times;
+  }
+}
+
 //! Whether two regions blink as one lamp of the map.
 bool alike(const vpLampObservation &a, const vpLampObservation &b)
 {
@@ -319,21 +341,19 @@ bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRo
   for (size_t i = 0; i < rois.size(); ++i) {
     for (size_t k = i + 1; k < rois.size(); ++k) {
       vpLampObservation &one = m_observations[i], &other = m_observations[k];
-      if (isPartOf(one, other)) {
+      vpLampObservation whole;
+      if (alike(one, other) && (rois[i].box & rois[k].box).area() > 0) {
+        whole = observe(picture, joined(rois[i], rois[k]));
+        recognizer.recognize(whole);
+      }
+      if (alike(whole, one)) {
+        rois[i] = joined(rois[i], rois[k]);
+        one = whole;
+      } else if (isPartOf(one, other)) {
         std::swap(one, other);
         std::swap(rois[i], rois[k]);
       } else if (!isPartOf(other, one)) {
-        if (!alike(one, other) || (rois[i].box & rois[k].box).area() == 0) {
-          continue;
-        }
-        const vpLedRoi whole = joined(rois[i], rois[k]);
-        vpLampObservation lamp = observe(picture, whole);
-        recognizer.recognize(lamp);
-        if (!alike(lamp, one)) {
-          continue;
-        }
-        rois[i] = whole;
-        one = lamp;
+        continue;
       }
       any = true;
       rois.erase(rois.begin() + static_cast<long>(k));
@@ -358,6 +378,7 @@ vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpL
     lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit, roi));
   }
   measureArea(picture, roi, lamp);
+  doubtClipped(lamp);
   place(lamp, fit, picture.transposed);
   lamp.cut = roi.cutAcross || roi.cutAlong;
   const Eigen::Vector2d &centre = fit.outline.centre;
