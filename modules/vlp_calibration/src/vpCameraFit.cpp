@@ -189,7 +189,7 @@ std::vector<vpBoardSight> middlesOf(const std::vector<vpBoardSight> &sights, con
     const std::array<double, 6> &pose = fit.poses[i];
     const Eigen::Matrix3d R = rotationOf(pose);
     const Eigen::Vector3d t(pose[3], pose[4], pose[5]);
-    for (size_t k = 0; k < sights[i].board.size(); ++k) {
+    for (size_t k = 0; sights[i].discRadius > 0 && k < sights[i].board.size(); ++k) {
       const cv::Point3f &board = sights[i].board[k];
       const Eigen::Vector3d middle(board.x, board.y, board.z), c = R * middle + t;
       const Eigen::Vector2d off = discMiddle<model>(fit.parameters, R, t, middle, sights[i].discRadius) -
@@ -208,7 +208,8 @@ bool fitTo(const std::vector<vpBoardSight> &sights, cv::Size size, vpCameraEstim
     return false;
   }
   static const int rounds = 2;
-  const bool discs = sights.front().discRadius > 0;
+  const bool discs = std::any_of(sights.begin(), sights.end(),
+                                 [](const vpBoardSight &sight) { return sight.discRadius > 0; });
   for (int round = 0; round < rounds && discs; ++round) {
     if (!adjust<model>(middlesOf<model>(sights, fit), fit, estimate)) {
       return false;

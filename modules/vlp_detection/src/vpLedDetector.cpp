@@ -131,8 +131,7 @@ void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObserv
 */
 void doubtClipped(vpLampObservation &lamp)
 {
-  static const double harmless = 0.3,
-                      steep = 6; // share of the lit pixels; times as uncertain, for each share
+  static const double harmless = 0.3, steep = 6; // share of the lit pixels; times, for each share beyond
   const double times = 1 + steep * std::max(0.0, lamp.saturated - harmless);
   vpStripeFeatures &features = lamp.features;
   if (std::isnan(features.frequencyNoise)) {
@@ -341,13 +340,15 @@ bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRo
   for (size_t i = 0; i < rois.size(); ++i) {
     for (size_t k = i + 1; k < rois.size(); ++k) {
       vpLampObservation &one = m_observations[i], &other = m_observations[k];
+      vpLedRoi both;
       vpLampObservation whole;
       if (alike(one, other) && (rois[i].box & rois[k].box).area() > 0) {
-        whole = observe(picture, joined(rois[i], rois[k]));
+        both = joined(rois[i], rois[k]);
+        whole = observe(picture, both);
         recognizer.recognize(whole);
       }
       if (alike(whole, one)) {
-        rois[i] = joined(rois[i], rois[k]);
+        rois[i] = both;
         one = whole;
       } else if (isPartOf(one, other)) {
         std::swap(one, other);
