@@ -28,6 +28,7 @@ struct Condition {
   double cut = 0;            // share of it that the picture's border takes, across the stripes
   int jpeg = 0;              // quality; 0: not compressed
   double exposure = 43.1e-6; // s
+  double noise = 1;          // grey levels, of a pixel, standard deviation
   vpModulation::Kind kind = vpModulation::Kind::pwm;
 };
 
@@ -79,6 +80,7 @@ void measure(const Condition &condition, double stripes, std::mt19937_64 &genera
   std::uniform_real_distribution<double> uniform(0, 1);
   vpSimulatedCamera camera;
   camera.rig = rigOf(condition);
+  camera.readNoise = condition.noise;
   vpSimulatedLamp lamp;
   lamp.lamp.id = "A";
   const double v =
@@ -146,7 +148,7 @@ void run(const Condition &condition, double stripes, int lamps)
 int main(int argc, char **argv)
 {
   const int lamps = argc > 1 ? std::atoi(argv[1]) : 1000;
-  std::vector<Condition> conditions(8);
+  std::vector<Condition> conditions(11);
   conditions[0].name = "even disc";
   conditions[1].name = "half of it beyond the border";
   conditions[1].cut = 0.5;
@@ -163,6 +165,12 @@ int main(int argc, char **argv)
   conditions[6].exposure = 120e-6;
   conditions[7].name = "two pulses";
   conditions[7].kind = vpModulation::Kind::twoPulse;
+  conditions[8].name = "noise of a line 32 dB, a pixel 20";
+  conditions[8].noise = 20;
+  conditions[9].name = "noise of a line 26 dB, a pixel 40";
+  conditions[9].noise = 40;
+  conditions[10].name = "noise of a line 20 dB, a pixel 80";
+  conditions[10].noise = 80;
   std::printf("%-34s %5s %6s %6s %6s | %s\n", "lamp", "strip", "id %", "kind", "told %",
               "frequency Hz, own, worst | duty, own | phase difference, own");
   for (const Condition &condition : conditions) {

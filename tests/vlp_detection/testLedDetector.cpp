@@ -276,6 +276,33 @@ TEST(LedDetector, ClippedStripesAreAsUncertainAsTheyAre)
 }
 
 //! Their region holds both, and what is found in its parts may be the same lamp.
+// A wave of twice the frequency explains two short pulses as well, where the lamp may be dark in between.
+TEST(LedDetector, NoiseMakesNoFrequencyThatIsNone)
+{
+  int told = 0;
+  for (unsigned int seed = 1; seed <= 60; ++seed) {
+    vpLampPicture noisy = picture();
+    noisy.width = noisy.height = 200;
+    noisy.noise = 40;
+    noisy.seed = seed;
+    const double frequency = 2.07 / (146 * noisy.rowTime);
+    vpPaintedLamp two = lamp(99.5, 99.5, frequency, 0.2);
+    two.a = two.b = 73;
+    two.phase = 0.0167 * seed;
+    noisy.lamps = {two};
+    vpLedDetector detector(vpUpwardRig(200, 200), map());
+    detector.detect(noisy.render());
+    for (const vpLampObservation &seen : detector.observations()) {
+      if (seen.features.signal == vpStripeFeatures::Signal::pwm &&
+          seen.features.frequencySigma < 0.1 * seen.features.frequency) {
+        ++told;
+        EXPECT_NEAR(seen.features.frequency, frequency, 6 * seen.features.frequencySigma) << "seed " << seed;
+      }
+    }
+  }
+  EXPECT_GE(told, 15); // of 60: the others show their pulses not twice
+}
+
 TEST(LedDetector, LampsThatPassEachOtherAreSeenOnce)
 {
   vpLampPicture passing = picture();

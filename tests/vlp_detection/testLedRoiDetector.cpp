@@ -347,6 +347,27 @@ TEST(LedRoiDetector, LampInClippedNoise)
     }
 }
 
+// Three standard deviations of a pixel's noise above the background: only many pixels together show it.
+TEST(LedRoiDetector, LampsThatSinglePixelsHardlyShow)
+{
+  for (const double noise : {8, 16, 40}) {
+    int found = 0, strangers = 0;
+    for (const double phase : phases) {
+      vpLampPicture picture = alone(disc(0, 0, 40, 3 * noise, 16, 0.5, phase));
+      picture.noise = noise;
+      picture.background = 60;
+      const cv::Rect lamp = litBy(picture, picture.lamps.front()).most;
+      const cv::Rect around(lamp.x - 16, lamp.y - 3, lamp.width + 32, lamp.height + 6);
+      for (const vpLedRoi &roi : detect(picture)) {
+        const bool whole = (roi.box & around) == roi.box && (roi.box & lamp).area() > 0.7 * lamp.area();
+        ++(whole ? found : strangers);
+      }
+    }
+    EXPECT_GE(found, 6) << "noise " << noise; // of seven
+    EXPECT_LE(strangers, 1) << "noise " << noise;
+  }
+}
+
 // A cut that separates one of them is best while the others are still together.
 TEST(LedRoiDetector, KeepsFourLampsInAColumnApart)
 {

@@ -13,6 +13,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "vpBackground.h"
+#include "vpBinnedSearch.h"
 #include "vpBrighter.h"
 #include "vpChordShape.h"
 #include "vpLampGroup.h"
@@ -303,6 +304,17 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
     return {};
   }
   const vpBackground dark = vpBackground::of(lines);
+  std::vector<vpLedRoi> rois = detect(lines, dark);
+  for (const int width : vpBinnedSearch::widths(dark)) {
+    rois = vpBinnedSearch::merged(
+        std::move(rois), detect(vpBinnedSearch::binned(lines, width), vpBinnedSearch::binned(dark, width)));
+  }
+  return rois;
+}
+
+std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines,
+                                               const vpBackground &dark) const
+{
   const double lowest = std::max(noiseFactor * dark.noise, minContrast);
 
   static const double peakFactor = 2.5, white = 255;

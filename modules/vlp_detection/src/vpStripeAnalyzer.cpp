@@ -85,7 +85,7 @@ private:
 //! The best of several starts.
 void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 {
-  if (!best || fit.cost() < best->cost()) {
+  if ((!best || fit.cost() < best->cost()) && !fit.hollow()) {
     best.emplace(std::move(fit));
   }
 }

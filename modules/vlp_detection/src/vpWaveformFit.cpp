@@ -285,6 +285,25 @@ Eigen::ArrayXd vpWaveformFit::envelope() const
   return (m_powers * Eigen::Map<const Eigen::VectorXd>(m_coefficient.data() + 1, m_linear - 1)).array();
 }
 
+bool vpWaveformFit::hollow() const
+{
+  static const double least = 0.25; // of the light to both sides
+  const Eigen::ArrayXd light = envelope();
+  Eigen::ArrayXd before = light;
+  for (Eigen::Index i = 1; i < light.size(); ++i) {
+    before(i) = std::max(before(i - 1), light(i));
+  }
+  double after = 0;
+  for (Eigen::Index i = light.size() - 1; i >= 0; --i) {
+    after = std::max(after, light(i));
+    const double beside = std::min(before(i), after);
+    if (beside > 0 && light(i) < least * beside) {
+      return true;
+    }
+  }
+  return false;
+}
+
 //! Grey levels, at each line.
 Eigen::ArrayXd vpWaveformFit::residuals() const
 {

@@ -81,6 +81,11 @@ public:
   //! What noise leaves of the frequency's standard deviation, Hz; the rest is of where edges hide from the
   //! lines. After integrate().
   double frequencyNoise() const;
+  /*!
+    Whether the lamp as it was fitted is nearly dark on lines between much brighter ones: no emitter is so, but
+    one of half the frequency, of which every other pulse is missing.
+  */
+  bool hollow() const;
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
   //! Share of the stripes' power left unexplained, beyond what noise explains.

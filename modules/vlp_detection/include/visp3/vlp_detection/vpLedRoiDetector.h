@@ -13,6 +13,8 @@
 
 BEGIN_VISP_NAMESPACE
 
+struct vpBackground;
+
 /*!
   A picture as its sensor read it: row y of the matrix is line y, whatever direction the readout runs in.
   Pictures read along columns are transposed, so that all detection works along rows; u and v swap on the way
@@ -58,7 +60,8 @@ struct VISP_EXPORT vpLedRoi {
   joined by their halos all get the level that suits them. The ceiling is such a region too, where it is
   brighter than the darkest part of the picture, and may have the shape of a lamp; it does not blink with the
   lamps before it, which are chosen then. Crumbs of a halo and pieces of a larger choice are left out at the
-  end.
+  end. Where noise is so strong that single pixels do not show a lamp, means of several along the lines are
+  looked at as well.
 */
 class VISP_EXPORT vpLedRoiDetector
 {
@@ -77,6 +80,9 @@ public:
     one, a larger one is looked at.
   */
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window) const;
+
+private:
+  std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const vpBackground &dark) const;
 };
 
 END_VISP_NAMESPACE
