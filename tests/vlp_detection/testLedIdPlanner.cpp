@@ -4,8 +4,6 @@
  */
 // Planned identifiers: as far apart as stated, and told apart as often, by draws and by the real analyser.
 
-#include <visp3/vlp_detection/vpLedIdPlanner.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -13,47 +11,12 @@
 #include <gtest/gtest.h>
 
 #include "common/vpExpectError.h"
+#include "plannedLamps.h"
 
-#ifdef ENABLE_VISP_NAMESPACE
-using namespace VISP_NAMESPACE_NAME;
-#endif
+using namespace plannedLamps;
 
 namespace
 {
-const double crystal = 50, rc = 10000; // ppm
-const double diameter = 0.175;         // m
-const double height = 1.5;             // m
-
-vpVlpRig rigOf(const std::string &name)
-{
-  return vpVlpRig::load(VLP_DATA_DIR "/rigs/ub300-" + name + ".yaml");
-}
-const std::string fullSize = "2048x1536", resized = "800x600"; // the latter by nearest neighbour
-
-vpModulation pwm(double frequency, double duty)
-{
-  vpModulation modulation;
-  modulation.kind = vpModulation::Kind::pwm;
-  modulation.frequency = frequency;
-  modulation.duty = duty;
-  return modulation;
-}
-
-vpLampMap mapOf(const std::vector<vpModulation> &signals, double ppm)
-{
-  vpLampMap map;
-  for (const vpModulation &signal : signals) {
-    vpLamp lamp;
-    lamp.id = std::to_string(map.lamps.size());
-    lamp.position = {static_cast<double>(map.lamps.size()), 0, 1.69};
-    lamp.size = diameter;
-    lamp.modulation = signal;
-    lamp.oscillatorPpm = ppm;
-    map.lamps.push_back(lamp);
-  }
-  return map;
-}
-
 //! Share of an exposure from \e start on that falls into pulses.
 double lit(const vpModulation &lamp, double phase, double start, double exposure)
 {
@@ -245,7 +208,7 @@ TEST(LedIdPlannerStatistics, RecogniserErrsNoMoreThanStated)
 // are drawn, too.
 TEST(LedIdPlannerStatistics, AnalyserAndRecogniserTellTheLampsApart)
 {
-  for (const std::string &name : {fullSize, resized}) {
+  for (const std::string name : {fullSize, resized}) {
     const vpVlpRig rig = rigOf(name);
     vpLedIdPlanner planner(rig);
     planner.highestFrequency = name == fullSize ? 7000 : 3900;
@@ -315,61 +278,6 @@ TEST(LedIdPlanner, WordsHaveOneBeginningAndDifferHoweverTurned)
   EXPECT_NE(planner.words(60, vpWordScheme()).refusal.find("the smallest lamp has 60"), std::string::npos);
   format.chipRate = 30000;
   EXPECT_FALSE(planner.words(146, format).refusal.empty());
-}
-
-TEST(LedIdPlanner, ConfusionFindsThePairsThatAreNear)
-{
-  const vpLedIdPlanner planner(rigOf(fullSize));
-  vpModulation two = pwm(2000, 0.3), word;
-  two.kind = vpModulation::Kind::twoPulse;
-  two.phaseDifference = 0.3;
-  word.kind = vpModulation::Kind::word;
-  word.bits = "01111010110010";
-  word.chipRate = 8000;
-  vpModulation other = word;
-  other.bits = "01111010110001";
-  vpLampMap map = mapOf({pwm(2000, 0.5), pwm(2002, 0.5), pwm(2000, 0.8), two, word, other}, crystal);
-  const std::vector<vpLedIdPair> pairs = planner.confusion(map);
-  ASSERT_EQ(pairs.size(), 4u); // three of pwm, one of words: kinds are told apart
-  EXPECT_EQ(pairs[0].first, 0u);
-  EXPECT_EQ(pairs[0].second, 1u);
-  const double sigma =
-      planner.prediction.doubt(pwm(2000, 0.5), planner.prediction.lines(diameter, height), crystal).frequency;
-  EXPECT_NEAR(pairs[0].distance, 2 / sigma, 0.01);
-  EXPECT_NEAR(pairs[0].error, 0.5 * std::erfc(1 / sigma / std::sqrt(2)), 0.005);
-  EXPECT_EQ(pairs.back().chips, 4); // 10 and 01 in manchester
-  EXPECT_TRUE(vpLedIdPlanner::reuse(map).empty());
-  map.lamps.push_back(map.lamps[1]);
-  map.lamps.push_back(map.lamps[1]);
-  map.lamps.back().position.x() += 3;
-  const std::vector<vpLedIdReuse> shared = vpLedIdPlanner::reuse(map);
-  ASSERT_EQ(shared.size(), 1u);
-  EXPECT_EQ(shared[0].identifier, 1u);
-  EXPECT_EQ(shared[0].apart, 0); // the first two hang in one place
-}
-
-TEST(LedIdPlanner, StripesTooLongToTellAreNotToldApart)
-{
-  const vpLedIdPlanner planner(rigOf(fullSize));
-  const std::vector<vpLedIdPair> pairs = planner.confusion(mapOf({pwm(20, 0.5), pwm(1000, 0.5)}, crystal));
-  ASSERT_EQ(pairs.size(), 1u);
-  EXPECT_EQ(pairs[0].distance, 0);
-  EXPECT_EQ(pairs[0].error, 0.5);
-}
-
-TEST(LedIdPlanner, AliasesAreNotToldApart)
-{
-  vpVlpRig rig = rigOf(fullSize);
-  rig.shutter.exposure = 5e-6; // short: both make stripes
-  const vpLedIdPlanner planner(rig);
-  const double other = 2 * planner.prediction.fold() - 3000;
-  const std::vector<vpLedIdPair> pairs =
-      planner.confusion(mapOf({pwm(3000, 0.5), pwm(other, 0.5), pwm(5000, 0.5)}, crystal));
-  ASSERT_EQ(pairs.size(), 3u);
-  EXPECT_EQ(pairs[0].first, 0u);
-  EXPECT_EQ(pairs[0].second, 1u);
-  EXPECT_GT(pairs[0].error, 0.4);
-  EXPECT_LT(pairs[1].error, 1e-3);
 }
 
 TEST(LedIdPlanner, BadSettingsAreRefused)

@@ -188,6 +188,31 @@ TEST(LedIdRecognizer, PhaseDifferenceTellsTwoPulseLampsApart)
   EXPECT_TRUE(recognized(map, seen).id.empty());
 }
 
+// Of 25 us of dark between them a line of 40 us shows nothing.
+TEST(LedIdRecognizer, TwoPulsesWithoutAGapCompeteForPlainStripes)
+{
+  vpLampMap map{{lamp("A", 2000, 0.4), lamp("B", 2000, 0.3)}};
+  vpModulation &two = map.lamps[1].modulation;
+  two.kind = vpModulation::Kind::twoPulse;
+  two.phaseDifference = 0.2;
+  vpRollingShutter exposed = shutter(1e-5);
+  exposed.exposure = 40e-6;
+  auto idOf = [&](double duty) {
+    vpLampObservation seen = stripes(2000, 0.5, duty);
+    vpLedIdRecognizer(map, exposed).recognize(seen);
+    return seen.id;
+  };
+  EXPECT_EQ(idOf(0.4), "");
+  EXPECT_EQ(idOf(0.9), ""); // neither
+  map.lamps[0].modulation.duty = 0.7;
+  EXPECT_EQ(idOf(0.7), "A");
+  EXPECT_EQ(idOf(0.35), "B");
+  exposed.exposure = 20e-6; // the gap shows
+  map.lamps[0].modulation.duty = 0.4;
+  EXPECT_EQ(idOf(0.4), "A");
+  EXPECT_EQ(idOf(0.3), "A"); // within four standard deviations
+}
+
 TEST(LedIdRecognizer, CodedAndSteadyRegionsHaveNoId)
 {
   const vpLampMap map{{lamp("A", 2000)}};

@@ -137,8 +137,7 @@ void doubtClipped(vpLampObservation &lamp)
   if (std::isnan(features.frequencyNoise)) {
     features.frequencyNoise = features.frequencySigma;
   }
-  static const double ofDuty = 0.2; // of that share
-  features.dutySigma = std::hypot(features.dutySigma, ofDuty * lamp.saturated);
+  features.dutySigma = std::hypot(features.dutySigma, lamp.clippedDuty());
   features.frequencySigma *= times;
   features.frequencyBound *= times;
   for (vpDutySlice &slice : features.alongDuty) {

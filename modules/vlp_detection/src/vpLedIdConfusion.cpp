@@ -9,11 +9,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
+#include "vpMergedPulses.h"
 #include "vpNormalTail.h"
 #include "vpWordCode.h"
 
@@ -26,10 +28,20 @@ struct Seen {
   const vpModulation *sent;
   double apparent; // Hz, of the stripes
   vpStripeDoubt doubt;
-  std::vector<vpStripeDoubt> scatter; // at some phases; empty of a word
-  double chipDistance = 0;            // of two words that differ in one chip
+  std::vector<vpStripeDoubt> scatter;     // at some phases; empty of a word
+  std::optional<vpMergedPulses> onePulse; // the duties that it may have where one pulse is seen
+  double chipDistance = 0;                // of two words that differ in one chip
   std::string chips;
 };
+
+//! \param exposure Of a line, s.
+std::optional<vpMergedPulses> onePulseOf(const vpModulation &sent, double exposure)
+{
+  if (sent.kind == vpModulation::Kind::pwm) {
+    return sent.duty ? vpMergedPulses{*sent.duty, *sent.duty} : vpMergedPulses();
+  }
+  return vpMergedPulses::of(sent, exposure);
+}
 
 //! The frequency, Hz, that stripes show to lines of a rate (Hz): above half of it another one (aliasing).
 double apparentOf(const vpModulation &sent, double lineRate)
@@ -45,22 +57,25 @@ double squaredDistance(double difference, double sigma, double otherSigma)
 
 bool comparable(const Seen &a, const Seen &b)
 {
-  return a.sent->kind == b.sent->kind && a.chips.size() == b.chips.size();
+  return (a.sent->kind == b.sent->kind && a.chips.size() == b.chips.size()) || (a.onePulse && b.onePulse);
 }
 
 //! Squared distance in units of a pair of doubts, words' chips left out.
 double squaredDistance(const Seen &one, const Seen &other, const vpStripeDoubt &ofA, const vpStripeDoubt &ofB)
 {
   const vpModulation &a = *one.sent, &b = *other.sent;
-  double squared = squaredDistance(one.apparent - other.apparent, ofA.frequency, ofB.frequency);
-  if (a.duty && b.duty) {
-    squared += squaredDistance(*a.duty - *b.duty, ofA.duty, ofB.duty);
+  const bool pulses = a.kind == vpModulation::Kind::twoPulse;
+  double shape = std::numeric_limits<double>::infinity();
+  if (a.kind == b.kind) {
+    shape = a.duty && b.duty ? squaredDistance(*a.duty - *b.duty, ofA.duty, ofB.duty) : 0;
+    shape += pulses ? squaredDistance(a.phaseDifference - b.phaseDifference, ofA.phaseDifference,
+                                      ofB.phaseDifference)
+                    : 0;
   }
-  if (a.kind == vpModulation::Kind::twoPulse) {
-    squared +=
-        squaredDistance(a.phaseDifference - b.phaseDifference, ofA.phaseDifference, ofB.phaseDifference);
+  if (one.onePulse && other.onePulse && (pulses || a.kind != b.kind)) {
+    shape = std::min(shape, squaredDistance(one.onePulse->distance(*other.onePulse), ofA.duty, ofB.duty));
   }
-  return squared;
+  return squaredDistance(one.apparent - other.apparent, ofA.frequency, ofB.frequency) + shape;
 }
 
 //! Probability that \e sent is taken for \e other, over the phases.
@@ -94,7 +109,7 @@ vpLedIdPair pairOf(const Seen &a, const Seen &b)
 Seen seenWord(const vpStripePrediction &prediction, const vpLamp &lamp, double lines)
 {
   const vpModulation &sent = lamp.modulation;
-  Seen seen{&sent, apparentOf(sent, 2 * prediction.fold()), {}, {}, 0, sent.chips()};
+  Seen seen{&sent, apparentOf(sent, 2 * prediction.fold()), {}, {}, {}, 0, sent.chips()};
   if (seen.chips.size() > vpWordCode::mostChips) {
     throw vpException(vpException::badValue,
                       "lamp " + vpShown(lamp.id) + ": a word of " + std::to_string(seen.chips.size()) +
@@ -142,6 +157,7 @@ std::vector<vpLedIdPair> vpLedIdPlanner::confusion(const vpLampMap &map, double 
                              apparentOf(lamp.modulation, 2 * prediction.fold()),
                              prediction.doubt(lamp.modulation, lines, lamp.oscillatorPpm),
                              prediction.scatter(lamp.modulation, lines, lamp.oscillatorPpm),
+                             onePulseOf(lamp.modulation, prediction.exposure()),
                              0,
                              {}});
   }

@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "vpDutyRidge.h"
+#include "vpMergedPulses.h"
+#include "vpNormalTail.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -36,6 +39,14 @@ bool sameKind(Signal signal, vpModulation::Kind kind)
   return (signal == Signal::pwm && kind == vpModulation::Kind::pwm) ||
          (signal == Signal::twoPulse && kind == vpModulation::Kind::twoPulse) ||
          (signal == Signal::coded && kind == vpModulation::Kind::word);
+}
+
+//! Density of a duty that may be any of some, but for its error.
+double evenDensity(double duty, double sigma, const vpMergedPulses &pulses)
+{
+  const double width = std::max(pulses.mostDuty - pulses.leastDuty, 1e-6);
+  return (vpNormalTail((pulses.leastDuty - duty) / sigma) - vpNormalTail((pulses.mostDuty - duty) / sigma)) /
+         width;
 }
 
 //! Density of what was seen under a lamp that the map does not know: any frequency of two decades, any duty,
@@ -143,7 +154,8 @@ void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const st
 }
 
 vpLedIdRecognizer::vpLedIdRecognizer(const vpLampMap &map, const vpRollingShutter &shutter)
-    : m_map(map), m_identifiers(map.identifiers()), m_byFrequency(m_identifiers.size())
+    : m_map(map), m_exposure(shutter.exposure), m_identifiers(map.identifiers()),
+      m_byFrequency(m_identifiers.size())
 {
   if (shutter.rowTime > 0) {
     m_relativeRowTime = shutter.rowTimeSigma / shutter.rowTime;
@@ -175,7 +187,11 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   const vpStripeFeatures &seen = lamp.features;
   const vpIdentifier &identifier = m_identifiers[index];
   const vpModulation &sent = identifier.modulation;
-  if (!sameKind(seen.signal, sent.kind)) {
+  std::optional<vpMergedPulses> merged;
+  if (seen.signal == Signal::pwm) {
+    merged = vpMergedPulses::of(sent, std::fmax(m_exposure, seen.exposure));
+  }
+  if (!sameKind(seen.signal, sent.kind) && !merged) {
     return;
   }
   if (!mayLookLike(identifier, lamp)) {
@@ -186,10 +202,14 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   candidate.identifier = index;
   candidate.frequency = sent.repetitionFrequency();
   candidate.clock = 1e-6 * identifier.oscillatorPpm * candidate.frequency;
-  // Saturation widens the lit stripes.
-  static const double bySaturation = 0.15;
-  const vpDutyRidge::Reading reading =
-      vpDutyRidge::of(seen, sent.duty, std::hypot(dutyError, bySaturation * lamp.saturated));
+  // What all frames share is no smaller where the stripes are those of several.
+  const double error = std::hypot(dutyError, lamp.clippedDuty());
+  vpDutyRidge::Reading reading = vpDutyRidge::of(seen, merged ? std::nullopt : sent.duty, error);
+  if (merged) {
+    const double sigma = std::hypot(reading.dutySigma, error);
+    reading.density = evenDensity(reading.duty, sigma, *merged);
+    reading.distance = merged->distance({reading.duty, reading.duty}) / sigma;
+  }
   candidate.seen = reading.frequency;
   candidate.reach =
       std::hypot(reachOf(reading.frequencySigma, seen.frequencyBound), spreadGate * reading.spread);
@@ -199,7 +219,7 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   candidate.weight *= reading.density;
   candidate.fits =
       reading.distance < shapeGate && !(reading.frequencySigma > maxSpread * seen.frequencyBound);
-  if (sent.kind == vpModulation::Kind::twoPulse) {
+  if (seen.signal == Signal::twoPulse) {
     const double sigma = std::hypot(seen.phaseDifferenceSigma, phaseError),
                  z = (seen.phaseDifference - sent.phaseDifference) / sigma;
     candidate.weight *= normalDensity(z, sigma);

@@ -124,6 +124,10 @@ struct VISP_EXPORT vpLampObservation {
   unsigned int track = 0; // number of the lamp that was followed from frame to frame; 0: none
   bool accepted = false;  // counts for the position
   std::string remark;     // why it has no id or does not count; empty where there is nothing to say
+
+  //! By how much the duty may seem another one since the grey scale ends, the same in all frames; standard
+  //! deviation.
+  double clippedDuty() const { return 0.2 * saturated; }
 };
 
 END_VISP_NAMESPACE

@@ -39,6 +39,8 @@ struct VISP_EXPORT vpRowTimeError {
   (vpStripeFeatures::frequencyBound), and what is known `maxSpread` times worse than that has no candidate.
   Where duty and frequency are known together only (vpStripeFeatures::alongDuty), each identifier is compared
   with what the frequency would be with its duty, and one that states none within `spreadGate` of all of them.
+  Two pulses with a gap shorter than the exposure may be seen as one, of any duty from about theirs to about
+  theirs and two gaps: such lamps compete for stripes that look like plain PWM.
 
   Of a lamp whose shape the map states by its size, the outline has that shape: a window that crossbars divide
   evenly has the stripes of a lamp, and is no disc.
@@ -84,6 +86,7 @@ private:
   void decide(vpLampObservation &lamp, const Sight &sight) const;
 
   vpLampMap m_map;
+  double m_exposure; // s, of a line
   std::vector<vpIdentifier> m_identifiers;
   std::vector<size_t> m_byFrequency; // identifiers, the slowest first
   double m_relativeRowTime = 0;      // standard deviation of the row time as a share of it
