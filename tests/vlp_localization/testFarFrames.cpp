@@ -127,7 +127,8 @@ TEST(FarFrames, AtThreeFramesASecondItFollows)
 TEST(FarFrames, CarriedUnderTwoLampsItIsNeverFarFromWhereItSays)
 {
   const Pair pair;
-  for (const Place &step : {Place{0.03, 0, 0}, Place{0, 0, 0.5}, Place{0.2, 0.1, 0.2}, Place{0, 0.1, -1}}) {
+  for (const Place &step : {Place{0.03, 0, 0}, Place{0.12, 0, 0}, Place{0.1, -0.05, 0}, Place{0, 0, 0.5},
+                            Place{0.2, 0.1, 0.2}, Place{0, 0.1, -1}}) {
     const Path path = [&step](double t) { return t < 9.5 * period ? Place{} : step; };
     vpVlpLocalizer localizer = pair.localizer();
     for (int k = 0; k < 20; ++k) {

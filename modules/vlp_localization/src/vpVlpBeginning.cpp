@@ -102,16 +102,19 @@ bool vpVlpLocalizer::startAt(const vpVlpLocation &location)
 {
   static const double recently = 1; // s
   filter.start(location.fix.wMb, location.timestamp);
-  if (!m_lastPose || location.timestamp - m_lastPose->time >= recently) {
+  // What a frame showed that was refused since then has proved right: the robot was elsewhere already.
+  const bool already = m_apart && !(m_lastPose && m_lastPose->time > m_apart->time);
+  const std::optional<LastPose> &last = already ? m_apart : m_lastPose;
+  if (!last || location.timestamp - last->time >= recently) {
     return false;
   }
-  const double since = location.timestamp - m_lastPose->time;
-  const vpHomogeneousMatrix way = m_lastPose->fix.wMb.inverse() * location.fix.wMb;
+  const double since = location.timestamp - last->time;
+  const vpHomogeneousMatrix way = last->fix.wMb.inverse() * location.fix.wMb;
   const double turn = std::atan2(way[1][0], way[0][0]);
   if (std::hypot(way[0][3], way[1][3]) > maxSpeed * since || std::abs(turn) > maxTurnRate * since) {
     return false; // it was carried
   }
-  filter.comeFrom(m_lastPose->fix, since);
+  filter.comeFrom(last->fix, since);
   return true;
 }
 

@@ -92,6 +92,9 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     location.observations = apart;
   } else if (few && (alone.valid || contradicted)) {
     m_refused = true;
+    if (elsewhere) {
+      m_apart = LastPose{alone, location.timestamp};
+    }
     location.fix = vpVlpFix();
     location.fix.refusal = alone.valid ? "the lamps agree with each other, and not with the robot's motion"
                                        : "the lamp does not agree with the robot's motion";

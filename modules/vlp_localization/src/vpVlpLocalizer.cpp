@@ -137,6 +137,7 @@ bool vpVlpLocalizer::inOrder(double time)
     filter.stop();
     tracker.reset();
     m_lastPose.reset();
+    m_apart.reset();
     m_contradictions = 0;
     m_unresting = 0;
     *m_trust = vpLampTrust();

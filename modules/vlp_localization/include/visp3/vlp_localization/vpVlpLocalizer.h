@@ -130,6 +130,7 @@ private:
   double m_lineTime = 0;                            // s, from line to line
   double m_halfReadout = 0;                         // s, from a frame's time stamp to its middle line
   std::optional<LastPose> m_lastPose;
+  std::optional<LastPose> m_apart;   // by the lamps of a frame that did not agree with the robot's motion
   std::optional<double> m_lastFrame; // s
   std::unique_ptr<vpLampTrust> m_trust;
   std::unique_ptr<Scratch> m_scratch; // memory that frames after the first take over
