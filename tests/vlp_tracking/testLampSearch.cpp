@@ -120,6 +120,25 @@ TEST(LampSearch, LampsThatJumpAreFoundWhereTheyAreExpected)
 }
 
 // Its first sight says nothing of a frequency; it is a lamp as soon as one does.
+// Nothing is where it was: then the whole picture is looked at, in this frame.
+TEST(LampSearch, LampsOfACameraThatWasCarriedAwayAreFoundAtOnce)
+{
+  const Scene scene;
+  const std::vector<Lamp> left = {{40, 60, 2000}, {40, 200, 2600}},
+                          right = {{340, 80, 3500}, {345, 260, 4400}};
+  vpLampTracker tracker = scene.tracker();
+  for (int k = 0; k < firstFrames; ++k) {
+    tracker.track(scene.frame(k, left));
+  }
+  const std::vector<vpLampObservation> &all = tracker.track(scene.frame(firstFrames, right));
+  for (const Lamp &lamp : right) {
+    const vpLampObservation *found = scene.seen(all, lamp);
+    ASSERT_TRUE(found != nullptr);
+    EXPECT_EQ(found->id, idOf(lamp.frequency));
+  }
+  EXPECT_EQ(all.size(), right.size());
+}
+
 TEST(LampSearch, RegionThatTellsNothingIsNotFollowed)
 {
   const Scene scene;

@@ -143,6 +143,25 @@ void vpLampTracker::search(const vpVlpFrame &frame)
   }
 }
 
+//! All of the picture, whatever was found before.
+void vpLampTracker::searchAll(const vpVlpFrame &frame)
+{
+  m_searched.clear();
+  clearObservations();
+  m_trackOf.clear();
+  for (Track &track : m_tracks) {
+    track.taken = false;
+  }
+  detector.detect(frame.I);
+  for (const vpLampObservation &seen : detector.observations()) {
+    addObservation(seen);
+  }
+  m_steady.clear();
+  for (const vpLampObservation &seen : m_observations) {
+    rememberSteady(seen, frame.timestamp);
+  }
+}
+
 /*!
   Steady regions move in the picture as the lamps do: by the similarity that takes these from the frame before
   to this one. What hangs higher or lower soon leaves its box, is seen there, and remembered anew.

@@ -73,19 +73,14 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   clearObservations();
   m_trackOf.clear();
   if (m_inSight < needed) {
-    m_searched.clear();
-    detector.detect(frame.I);
-    for (const vpLampObservation &seen : detector.observations()) {
-      addObservation(seen);
-    }
-    m_steady.clear();
-    for (const vpLampObservation &seen : m_observations) {
-      rememberSteady(seen, frame.timestamp);
-    }
+    searchAll(frame);
   } else {
     glance(frame.I);
     moveSteady(frame.timestamp);
     search(frame);
+    if (needed > 0 && lampsInSight() == 0) { // all of them dark, or the camera elsewhere
+      searchAll(frame);
+    }
   }
 
   // Which region is which lamp; what all its frames say of it; what is new.
@@ -110,9 +105,7 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
     }
   }
   sortByArea();
-  m_inSight = static_cast<size_t>(
-      std::count_if(m_observations.begin(), m_observations.end(),
-                    [](const vpLampObservation &seen) { return !seen.candidates.empty(); }));
+  m_inSight = lampsInSight();
   m_time = frame.timestamp;
   m_any = true;
   bury(frame.timestamp);
@@ -120,6 +113,14 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
     track.remember(frame.I);
   }
   return m_observations;
+}
+
+//! Of the map's, that may be among what was seen.
+size_t vpLampTracker::lampsInSight() const
+{
+  return static_cast<size_t>(
+      std::count_if(m_observations.begin(), m_observations.end(),
+                    [](const vpLampObservation &seen) { return !seen.candidates.empty(); }));
 }
 
 //! None is left; their memory is kept for those to come.

@@ -26,10 +26,10 @@ BEGIN_VISP_NAMESPACE
   finds is looked at with care, and so are windows that show any other light.
 
   New lamps are born of a search that covers a strip of each frame, so that its cost is bounded; of the whole
-  frame only where fewer lamps than `needed` are in sight. One that is not seen for `patience` dies, and so
-  does one that left the picture. Stripes that contradict what a lamp has shown before are another lamp's: it
-  begins anew, with a new number and without an id, until its own stripes give it one. So ids are never handed
-  from lamp to lamp where two cross or one is replaced.
+  frame only where fewer lamps than `needed` were in sight before, or none is. One that is not seen for
+  `patience` dies, and so does one that left the picture. Stripes that contradict what a lamp has shown before
+  are another lamp's: it begins anew, with a new number and without an id, until its own stripes give it one.
+  So ids are never handed from lamp to lamp where two cross or one is replaced.
 
   A picture that shows all lamps as the frame before did, pixel for pixel, has come twice: sensors are never
   that quiet. Its stripes say nothing new, so that they do not count again.
@@ -97,6 +97,8 @@ private:
   bool glanceAsExpected(Track &track, const vpImage<unsigned char> &I, const std::vector<vpRect> &expected);
   void glance(const vpImage<unsigned char> &I);
   void search(const vpVlpFrame &frame);
+  void searchAll(const vpVlpFrame &frame);
+  size_t lampsInSight() const;
   void moveSteady(double time);
   void rememberSteady(const vpLampObservation &seen, double time);
   void assign();
