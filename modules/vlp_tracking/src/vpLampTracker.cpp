@@ -72,15 +72,13 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   setWindows(frame, expected);
   clearObservations();
   m_trackOf.clear();
-  if (m_inSight < needed) {
-    searchAll(frame);
-  } else {
+  if (m_inSight >= needed) {
     glance(frame.I);
     moveSteady(frame.timestamp);
     search(frame);
-    if (needed > 0 && lampsInSight() == 0) { // all of them dark, or the camera elsewhere
-      searchAll(frame);
-    }
+  }
+  if (m_inSight < needed || lampsInSight() < needed) { // some are dark, or the camera is elsewhere
+    searchAll(frame);
   }
 
   // Which region is which lamp; what all its frames say of it; what is new.

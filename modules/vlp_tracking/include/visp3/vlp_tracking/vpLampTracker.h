@@ -26,10 +26,10 @@ BEGIN_VISP_NAMESPACE
   finds is looked at with care, and so are windows that show any other light.
 
   New lamps are born of a search that covers a strip of each frame, so that its cost is bounded; of the whole
-  frame only where fewer lamps than `needed` were in sight before, or none is. One that is not seen for
-  `patience` dies, and so does one that left the picture. Stripes that contradict what a lamp has shown before
-  are another lamp's: it begins anew, with a new number and without an id, until its own stripes give it one.
-  So ids are never handed from lamp to lamp where two cross or one is replaced.
+  frame only where fewer lamps than `needed` were or are in sight. One that is not seen for `patience` dies,
+  and so does one that left the picture. Stripes that contradict what a lamp has shown before are another
+  lamp's: it begins anew, with a new number and without an id, until its own stripes give it one. So ids are
+  never handed from lamp to lamp where two cross or one is replaced.
 
   A picture that shows all lamps as the frame before did, pixel for pixel, has come twice: sensors are never
   that quiet. Its stripes say nothing new, so that they do not count again.
