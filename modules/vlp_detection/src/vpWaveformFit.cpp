@@ -287,7 +287,7 @@ Eigen::ArrayXd vpWaveformFit::envelope() const
 
 bool vpWaveformFit::hollow() const
 {
-  static const double least = 0.25; // of the light to both sides
+  static const double least = 0.25, bright = 0.3; // of the light to both sides; of the brightest line
   const Eigen::ArrayXd light = envelope();
   Eigen::ArrayXd before = light;
   for (Eigen::Index i = 1; i < light.size(); ++i) {
@@ -297,7 +297,7 @@ bool vpWaveformFit::hollow() const
   for (Eigen::Index i = light.size() - 1; i >= 0; --i) {
     after = std::max(after, light(i));
     const double beside = std::min(before(i), after);
-    if (beside > 0 && light(i) < least * beside) {
+    if (beside > bright * light.maxCoeff() && light(i) < least * beside) {
       return true;
     }
   }
