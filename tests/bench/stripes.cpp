@@ -106,13 +106,13 @@ void measure(const Condition &condition, double stripes, std::mt19937_64 &genera
   if (detector.observations().empty()) {
     return;
   }
+  sum.accepted += detector.observations().front().id == "A";
   const vpStripeFeatures &features = detector.observations().front().features;
   const bool two = modulation.kind == vpModulation::Kind::twoPulse;
   if (features.signal != (two ? vpStripeFeatures::Signal::twoPulse : vpStripeFeatures::Signal::pwm)) {
     ++sum.wrongKind;
     return;
   }
-  sum.accepted += detector.observations().front().id == "A";
   const double f = features.frequency - modulation.frequency, d = features.duty - *modulation.duty;
   if (!(features.frequencySigma < 0.1 * features.frequency)) {
     return;

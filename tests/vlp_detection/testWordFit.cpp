@@ -190,6 +190,26 @@ std::vector<Case> cases()
   return all;
 }
 
+// What no pulses explain may be a word all the same.
+TEST(WordFit, WordsUnlikeAnyPulses)
+{
+  const std::vector<std::pair<std::string, double>> words = {
+      {"1001010000001", 3486}, {"0000010011010", 3363}, {"00100110000", 4010}};
+  std::mt19937 random(7);
+  for (const auto &[chips, rate] : words) {
+    SentWord sent;
+    sent.chips = chips;
+    sent.chipRate = rate;
+    sent.decibel = 25;
+    sent.rim = 3;
+    int coded = 0;
+    for (int trial = 0; trial < 15; ++trial) {
+      coded += read(sent, random, true, 0).signal == vpStripeFeatures::Signal::coded;
+    }
+    EXPECT_EQ(coded, 15) << chips;
+  }
+}
+
 TEST(WordFit, Statistics)
 {
   static const int trials = 30, blindTrials = 3;

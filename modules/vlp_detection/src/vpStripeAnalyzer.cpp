@@ -301,6 +301,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
       !byAll.significant(minSignificance)) {
     return features;
   }
+  features.misfit = 1; // where no pulses explain anything
   Start *start = &byAll;
   std::optional<Start> byWhole;
   std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
