@@ -13,6 +13,7 @@
 
 #include "vpLampGeometry.h"
 #include "vpLampTrust.h"
+#include "vpSurprise.h"
 #include "vpVlpScratch.h"
 
 BEGIN_VISP_NAMESPACE
@@ -41,6 +42,7 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   m_moving = moving;
   // One frame alone hardly tells a robot that moves from lamps that hang a little elsewhere.
   if (moving && fine.fix.valid) {
+    vpSurprise::doubt(fine.fix);
     location.fix.wMb = fine.fix.wMb;
     location.fix.wMc = fine.fix.wMc;
     location.fix.covariance = fine.fix.covariance;

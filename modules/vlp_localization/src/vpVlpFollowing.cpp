@@ -12,22 +12,16 @@
 
 #include "vpLampConsensus.h"
 #include "vpLampTrust.h"
+#include "vpSurprise.h"
 #include "vpVlpScratch.h"
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double surprising = 3;     // standard deviations of a chi-square, of a robot that may start and stop
 const double manoeuvring = 0.05; // share of the random accelerations, which a long readout shows
 const int young = 3;             // frames since the start: its velocity is not known, or rests on the claims
 const char *const misplaced = "not where the robot's motion has it";
-
-//! Of a chi-square, in its standard deviations.
-double beyondMean(double chiSquare, double degrees)
-{
-  return (chiSquare - degrees) / std::sqrt(2 * std::max(1.0, degrees));
-}
 
 size_t accepted(const vpVlpLocation &location)
 {
@@ -156,17 +150,14 @@ vpVlpLocalizer::Motion vpVlpLocalizer::correctRestless(vpVlpLocation &location,
     again();
     attempt();
   }
-  auto surprises = [&] {
-    return scratch.before.unrest() == 1 &&
-           beyondMean(location.fix.chiSquare, location.fix.degreesOfFreedom) > surprising;
-  };
+  auto surprises = [&] { return scratch.before.unrest() == 1 && vpSurprise::of(location.fix); };
   if (halfOrLess() || surprises()) {
     scratch.before.forgetVelocity();
     again();
     attempt();
   }
-  if (surprises()) { // nothing that a robot does: by Birge's ratio
-    location.fix.covariance *= location.fix.chiSquare / location.fix.degreesOfFreedom;
+  if (surprises()) { // nothing that a robot does
+    vpSurprise::doubt(location.fix);
     return Motion::inexplicable;
   }
   return motion;
@@ -209,7 +200,7 @@ double vpVlpLocalizer::strain(const vpVlpLocation &location, const std::vector<s
       alone.startAgain();
     }
   }
-  return beyondMean(chiSquare, degrees);
+  return vpSurprise::beyondMean(chiSquare, degrees);
 }
 
 /*!
@@ -224,8 +215,9 @@ bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vecto
     return location.observations[i].remark == misplaced;
   });
   // What lamps do not contradict where a pose is expected they contradict less where none is.
-  const bool calm = !m_scratch->displaced && filter.unrest() <= manoeuvring &&
-                    beyondMean(location.fix.chiSquare, location.fix.degreesOfFreedom) < mostStrain;
+  const bool calm =
+      !m_scratch->displaced && filter.unrest() <= manoeuvring &&
+      vpSurprise::beyondMean(location.fix.chiSquare, location.fix.degreesOfFreedom) < mostStrain;
   const bool now = usable.size() > 2 && (roused || 2 * static_cast<size_t>(apart) >= usable.size() ||
                                          (!calm && strain(location, usable) > mostStrain));
   m_contradictions = now ? m_contradictions + 1 : std::max(0, m_contradictions - 1);
