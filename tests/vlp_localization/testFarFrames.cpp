@@ -199,6 +199,36 @@ TEST(FarFrames, CameraThatLeansMoreThanItSaysIsFoundOut)
   }
 }
 
+// Round a small circle without turning, or to and fro in curves: camera and map are not to blame.
+TEST(FarFrames, RobotThatNeverComesToRestIsFollowedAllTheSame)
+{
+  const Path round = [](double t) { return Place{0.1 * std::cos(M_PI * t), 0.1 * std::sin(M_PI * t), 0.02}; };
+  const Path weaving = [](double t) {
+    static const double step = 0.001; // s
+    Place place{-0.3, 0, 0};
+    for (double at = 0; at < t; at += step) {
+      place.yaw = 0.4 * std::sin(M_PI * at);
+      place.x += 0.1 * step * std::cos(place.yaw);
+      place.y += 0.1 * step * std::sin(place.yaw);
+    }
+    return place;
+  };
+  for (const Path &path : {round, weaving}) {
+    const Claims claims;
+    vpVlpLocalizer localizer(claims.rig, claims.map);
+    for (int k = 0; k < 72; ++k) {
+      const double time = k / 12.0;
+      const vpVlpFix fix =
+          localizer.process(claims.camera.frame(claims.lamps, time, path, std::fmod(37.7 * time, 1), 1)).fix;
+      const Place place = path(time);
+      ASSERT_TRUE(fix.valid) << time << ": " << fix.refusal;
+      if (k > 12) {
+        EXPECT_LT(std::hypot(fix.wMb[0][3] - place.x, fix.wMb[1][3] - place.y), 0.001) << time;
+      }
+    }
+  }
+}
+
 // What is of second order counts as long as the velocity is not known.
 TEST(FarFrames, FrameLinearisedAboutItsOwnPathIsAsGoodAsItSays)
 {

@@ -224,8 +224,15 @@ bool vpVlpLocalizer::contradicts(const vpVlpLocation &location, const std::vecto
   static const double unresting = 0.2;            // share of the random accelerations
   static const double forGood = 2, longest = 0.4; // s; between two frames
   const double since = m_lastPose ? std::min(longest, location.timestamp - m_lastPose->time) : 0;
-  m_unresting = usable.size() > 2 && filter.unrest() > unresting ? m_unresting + since
-                                                                 : std::max(0.0, m_unresting - 2 * since);
+  // What moves sideways from pose to pose is carried by more than wheels, and may never come to rest.
+  static const double sideways = 0.1; // m/s
+  double aside = 0;                   // m, since the last pose
+  for (unsigned int i = 0; i < 2 && m_lastPose; ++i) {
+    aside += m_lastPose->fix.wMb[i][1] * (location.fix.wMb[i][3] - m_lastPose->fix.wMb[i][3]);
+  }
+  const bool restless = usable.size() > 2 && filter.unrest() > unresting && !filter.doubtsClaims() &&
+                        std::abs(aside) < sideways * since;
+  m_unresting = restless ? m_unresting + since : std::max(0.0, m_unresting - 2 * since);
   return m_contradictions >= often || m_unresting >= forGood;
 }
 
