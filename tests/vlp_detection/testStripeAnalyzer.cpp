@@ -170,6 +170,32 @@ TEST(StripeAnalyzer, LongExposureDoesNotBiasFrequencyOrDuty)
   EXPECT_GE(duties.within, 49);
 }
 
+// Pulse and exposure together longer than a period leave no line dark. The dark rest of the period under an
+// exposure as long as the pulse lacks would look alike, of a lamp that never goes out.
+TEST(StripeAnalyzer, LampThatNoLineShowsDarkIsNoShorterPulse)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> exposure(0.5, 0.8), together(1.03, 1.3);
+  Spread frequencies, duties;
+  for (unsigned int trial = 0; trial < 50; ++trial) {
+    const double exposed = exposure(random), share = std::min(0.85, together(random) - exposed);
+    Scene scene;
+    scene.radius = 40;
+    scene.exposure = 200e-6;
+    scene.seed = trial + 1;
+    scene.lamp.frequency = exposed / scene.exposure;
+    scene.lamp.pwm(share);
+    const vpStripeFeatures seen = scene.features();
+    ASSERT_EQ(seen.signal, Signal::pwm) << "trial " << trial;
+    frequencies.add(seen.frequency - scene.lamp.frequency, seen.frequencySigma);
+    duties.add(seen.duty - share, std::hypot(seen.dutySigma, 0.03));
+  }
+  frequencies.print("frequency, Hz");
+  duties.print("duty");
+  EXPECT_GE(frequencies.within, 49);
+  EXPECT_EQ(duties.within, 50);
+}
+
 TEST(StripeAnalyzer, TwoPulsesAndTheirPhaseDifference)
 {
   std::mt19937 random(5);

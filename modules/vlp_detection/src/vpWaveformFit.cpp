@@ -130,7 +130,8 @@ void vpWaveformFit::keepPossible(Vector &x) const
       std::max(std::clamp(x(frequency), m_startFrequency - reach, m_startFrequency + reach), 0.1 / m_half);
   x(duty) = std::clamp(x(duty), 0.02, 0.98);
   if (m_freeExposure) {
-    x(exposure) = std::clamp(x(exposure), 0.1 * m_profile->exposure, 5 * m_profile->exposure);
+    x(exposure) =
+        std::clamp(x(exposure), leastExposure * m_profile->exposure, mostExposure * m_profile->exposure);
   }
   if (m_settings.twoPulse) {
     x(phaseDifference) = std::clamp(x(phaseDifference), 0.5 * x(duty), 0.5);
@@ -168,9 +169,7 @@ double vpWaveformFit::cost(const Vector &x)
   }
   A.triangularView<Eigen::StrictlyUpper>() = A.transpose();
   Column c = A.ldlt().solve(b);
-  // No light is less than none: were it, a lamp's dark pulse blurred by a long exposure would do for a bright
-  // one.
-  const double least = -1 - 0.02 * std::abs(c(1)) * m_given(m_given.size() / 2);
+  const double least = leastOffset(c(1));
   if (c(0) < least) {
     const Column fixed = b - least * A.col(0);
     c.tail(m_linear - 1) =
@@ -279,6 +278,15 @@ bool vpWaveformFit::bendEnvelope()
   return true;
 }
 
+/*!
+  The least light of a dark lamp, grey levels: were it less than none, a lamp's dark pulse blurred by a long
+  exposure would do for a bright one. \param share Of the envelope, that the lit lamp has.
+*/
+double vpWaveformFit::leastOffset(double share) const
+{
+  return -1 - 0.02 * std::abs(share) * m_given(m_given.size() / 2);
+}
+
 //! At each line, as it was fitted, grey levels.
 Eigen::ArrayXd vpWaveformFit::envelope() const
 {
@@ -351,38 +359,6 @@ void vpWaveformFit::descend(int iterations)
     }
   }
   settle();
-}
-
-//! Chi-square of a pulse and an exposure, and not each the other.
-double vpWaveformFit::unlikely(const Vector &x) const
-{
-  return vpStripeLimits::unlikely(x(exposure) / m_profile->exposure, x(duty));
-}
-
-//! What pulse and exposure would be were each taken for the other.
-std::optional<vpWaveformFit::Vector> vpWaveformFit::exchanged() const
-{
-  const double pulse = m_x(duty) / pulses(), exposed = m_x(exposure) * m_x(frequency); // periods
-  static const double wholePeriod = 0.98;
-  if (exposed * pulses() > wholePeriod) {
-    return std::nullopt;
-  }
-  Vector other = m_x;
-  other(phase) += 0.5 * (exposed - pulse); // the pulse's middle stays
-  other(duty) = exposed * pulses();
-  other(exposure) = pulse / m_x(frequency);
-  return other;
-}
-
-bool vpWaveformFit::preferStatedExposure()
-{
-  const std::optional<Vector> other = exchanged();
-  if (!other || unlikely(m_x) <= unlikely(*other)) {
-    return true;
-  }
-  // The fit from there may find its way back.
-  return run((*other)(frequency), (*other)(phase), (*other)(duty), (*other)(phaseDifference),
-             (*other)(exposure), true);
 }
 
 int vpWaveformFit::degreesOfFreedom() const

@@ -6,7 +6,6 @@
 #define vpWaveformFit_h
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -54,8 +53,9 @@ public:
            bool near = false);
 
   /*!
-    Pulse and exposure are both boxes, and which is which the profile does not say: swaps them where that
-    brings exposure and duty together nearer to the stated exposure and to the duties that lamps have.
+    Pulse and exposure are both boxes, and which is which the profile does not say, nor which of them are the
+    dark rest of the period: takes what of these is together nearest to the stated exposure, to the duties
+    that lamps have and to a lamp that goes dark.
   */
   bool preferStatedExposure();
 
@@ -93,9 +93,14 @@ public:
 
 private:
   static constexpr int mostLinear = 6;
+  static constexpr double leastExposure = 0.1, mostExposure = 5; // of the stated one
 
   struct Prior {
     double chiSquare = 0, weight = 0, mean = 0;
+  };
+  struct LookAlike {
+    Vector x;
+    double unlikely; // chi-square
   };
   struct Posterior {
     Vector mean;
@@ -138,8 +143,9 @@ private:
     }
   }
   double pulses() const { return m_settings.twoPulse ? 2 : 1; } // of a period
-  double unlikely(const Vector &x) const;
-  std::optional<Vector> exchanged() const;
+  double leastOffset(double share) const;
+  double unlikely(const Vector &x, double darkest) const;
+  std::vector<LookAlike> lookAlikes() const;
   void keepPossible(Vector &x) const;
   Prior prior(int parameter, const Vector &x) const;
   int degreesOfFreedom() const;

@@ -56,16 +56,17 @@ void vpWaveformFit::integrate()
 
   const Posterior found = posterior();
   m_x = found.mean;
+  settle();
   const double misplaced = vpStripeLimits::untrue * gap() * m_x(frequency); // periods
   Vector doubt = Vector::Zero();
   doubt(duty) = doubt(phaseDifference) = misplaced;
   doubt(frequency) = misplaced / m_half;
-  if (const std::optional<Vector> other = exchanged()) {
-    const double spread = vpStripeLimits::spread((*other)(duty)-m_x(duty), unlikely(*other) - unlikely(m_x));
-    doubt(duty) = std::hypot(doubt(duty), spread);
+  const double here = unlikely(m_x, m_coefficient[0]);
+  for (const LookAlike &other : lookAlikes()) {
+    doubt(duty) =
+        std::hypot(doubt(duty), vpStripeLimits::spread(other.x(duty) - m_x(duty), other.unlikely - here));
   }
   m_sigma = (found.covariance.diagonal().cwiseMax(0) + doubt.cwiseAbs2()).cwiseSqrt();
-  settle();
 }
 
 //! About the minimum at m_x.
@@ -244,6 +245,66 @@ vpWaveformFit::Posterior vpWaveformFit::sampled(const Posterior &from, int sampl
   const double counted = std::max(1.0, sum * sum / squares);
   posterior.covariance += from.covariance / (1 + std::pow(counted / 4, 4));
   return posterior;
+}
+
+/*!
+  Chi-square of pulse, exposure and offset, and not those of a profile that looks alike. \param darkest Light
+  of the dark lamp, grey levels.
+*/
+double vpWaveformFit::unlikely(const Vector &x, double darkest) const
+{
+  return vpStripeLimits::unlikely(x(exposure) / m_profile->exposure, x(duty)) +
+         m_darkness * darkest * darkest;
+}
+
+/*!
+  What pulse and exposure would be were each taken for the other, each for the dark rest of the period, or
+  both: of the same shape, but for what light the dark lamp has. After settle().
+*/
+std::vector<vpWaveformFit::LookAlike> vpWaveformFit::lookAlikes() const
+{
+  const double pulse = m_x(duty) / pulses(), exposed = m_x(exposure) * m_x(frequency); // periods
+  const double dark = m_coefficient[0];
+  std::vector<LookAlike> found;
+  auto add = [&](double otherPulse, double otherExposure, double offset) {
+    static const double wholePeriod = 0.98;
+    const double stated = otherExposure / (m_profile->exposure * m_x(frequency));
+    const bool possible = otherPulse * pulses() <= wholePeriod && otherPulse > 1 - wholePeriod &&
+                          stated > leastExposure && stated < mostExposure &&
+                          offset >= leastOffset(m_coefficient[1]);
+    if (possible) {
+      LookAlike other{m_x, 0};
+      other.x(phase) += 0.5 * (otherPulse - pulse); // the pulse's middle stays
+      other.x(duty) = otherPulse * pulses();
+      other.x(exposure) = otherExposure / m_x(frequency);
+      other.unlikely = unlikely(other.x, offset);
+      found.push_back(other);
+    }
+  };
+  add(exposed, pulse, dark);
+  if (!m_settings.twoPulse) {
+    // Boxes that overlap by more than a period are nowhere apart.
+    const double light = m_coefficient[1] * m_given(m_given.size() / 2),
+                 never = dark + light * (pulse + exposed - 1) / exposed;
+    add(1 - exposed, 1 - pulse, never);
+    add(1 - pulse, 1 - exposed, never);
+  }
+  return found;
+}
+
+bool vpWaveformFit::preferStatedExposure()
+{
+  const std::vector<LookAlike> others = lookAlikes();
+  const auto least =
+      std::min_element(others.begin(), others.end(), [](const LookAlike &one, const LookAlike &other) {
+        return one.unlikely < other.unlikely;
+      });
+  if (least == others.end() || unlikely(m_x, m_coefficient[0]) <= least->unlikely) {
+    return true;
+  }
+  // The fit from there may find its way back.
+  const Vector &x = least->x;
+  return run(x(frequency), x(phase), x(duty), x(phaseDifference), x(exposure), true);
 }
 
 END_VISP_NAMESPACE
