@@ -45,6 +45,13 @@ struct vpLineStretch {
   bool enough() const { return to - from >= 3; }
 };
 
+//! What outlines are fitted to.
+struct vpEdgeFitPicture {
+  const cv::Mat_<unsigned char> &lines;
+  const std::vector<double> &linePositions, &samplePositions;
+  bool samplesAligned; // each lies where its number says
+};
+
 /*!
   Gauss-Newton fit of an outline to the grey values about the two ends of each lit line: the pixel-integrated
   blurred edge, its blur, and each end's own background and amplitude, so that it does not matter where the
@@ -84,12 +91,9 @@ public:
     }
   };
 
-  //! \param samplesAligned Each lies where its number says.
-  vpEdgeFit(const cv::Mat_<unsigned char> &lines, const std::vector<double> &linePositions,
-            const std::vector<double> &samplePositions, bool samplesAligned, const Model &start,
-            Memory &memory)
-      : m_lines(&lines), m_v(&linePositions), m_u(&samplePositions), m_aligned(samplesAligned),
-        m_model(start), m_memory(&memory)
+  vpEdgeFit(const vpEdgeFitPicture &picture, const Model &start, Memory &memory)
+      : m_lines(&picture.lines), m_v(&picture.linePositions), m_u(&picture.samplePositions),
+        m_aligned(picture.samplesAligned), m_model(start), m_memory(&memory)
   {
   }
 

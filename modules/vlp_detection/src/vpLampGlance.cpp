@@ -55,7 +55,7 @@ bool vpLampGlance::findOutline(const vpLinePicture &picture, const vpLineTiming 
                         static_cast<int>(std::ceil(box(2) - box(0))),
                         static_cast<int>(std::ceil(box(3) - box(1))));
   vpEdgeFit<vpEllipseModel> ellipse(
-      picture.grey, timing.linePositions(), timing.samplePositions(), timing.samplesAligned(),
+      {picture.grey, timing.linePositions(), timing.samplePositions(), timing.samplesAligned()},
       vpEllipseModel(outline.centre, outline.a, outline.b, outline.angle), m_edges);
   if (!ellipse.run(around, shapeSigma, steps, before.blur) || ellipse.kept() < nearlyAll ||
       ellipse.shining() < nearlyAll || ellipse.prior() > rare || ellipse.evenness() < evenEdge) {

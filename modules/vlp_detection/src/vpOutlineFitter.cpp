@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "vpBrighter.h"
 #include "vpChordShape.h"
 #include "vpEdgeFit.h"
 
@@ -112,6 +114,96 @@ void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines,
   outline.centreCovariance = (0.5 * outline.diameter() * doubt).cwiseAbs2().asDiagonal();
 }
 
+//! How much brighter the brightest of a chord is than its region's level, grey levels.
+double lightOf(const vpLedChord &chord, const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  const int samples = chord.last - chord.first + 1;
+  return vpBrighter::brightest(lines[chord.line] + chord.first, samples) - roi.level;
+}
+
+double brightestOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  double brightest = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    brightest = std::max(brightest, lightOf(chord, lines, roi));
+  }
+  return brightest;
+}
+
+//! What of each lit line is brighter than half its light.
+vpLedRoi brightPart(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  static const double half = 0.5, lit = 0.5; // of a line's light; of the brightest line's
+  const double brightest = brightestOf(lines, roi);
+  vpLedRoi part = roi;
+  part.chords.clear();
+  part.box = cv::Rect();
+  for (vpLedChord chord : roi.chords) {
+    const double light = lightOf(chord, lines, roi), least = roi.level + half * light;
+    if (light < lit * brightest) {
+      continue;
+    }
+    while (lines(chord.line, chord.first) < least) {
+      ++chord.first;
+    }
+    while (lines(chord.line, chord.last) < least) {
+      --chord.last;
+    }
+    part.chords.push_back(chord);
+    part.box |= cv::Rect(chord.first, chord.line, chord.last - chord.first + 1, 1);
+  }
+  return part;
+}
+
+//! Whether no rectangle is as near to the ends of a region's chords as an ellipse is.
+bool isRound(const std::vector<cv::Point2f> &ends, const vpLedRoi &roi)
+{
+  static const double worse = 3;
+  return vpChordShape::rectangleMisfit(ends) > worse * vpChordShape::ellipseMisfit(ends, roi.box);
+}
+
+/*!
+  The lamp alone, where its region holds dimmer light beside it as well, its ghost in a pane or a rim that it
+  lights, whose edges an ellipse about both takes for the lamp's. \param evenness Of that ellipse; 0: none.
+*/
+std::optional<vpOutlineFit> withoutCompanion(const vpEdgeFitPicture &picture, const vpLedRoi &roi,
+                                             double shapeSigma, int maxIterations, double evenness)
+{
+  static const double more = 0.2, nearlyAlone = 0.7; // evenness
+  static const double nearlyAll = 0.93;              // of the ends
+  static const size_t enough = 16;                   // of them
+  const vpLedRoi part = brightPart(picture.lines, roi);
+  const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(part, picture.lines.cols));
+  if (ends.size() < enough || !isRound(ends, part)) {
+    return std::nullopt;
+  }
+  vpEdgeFit<vpEllipseModel>::Memory memory;
+  vpEdgeFit<vpEllipseModel> fit(picture, vpEllipseModel::from(ends, part.box), memory);
+  if (!fit.run(part.box, shapeSigma, {maxIterations}) || !holds(fit.result(), part) ||
+      fit.kept() < nearlyAll || fit.evenness() < std::max(nearlyAlone, evenness + more)) {
+    return std::nullopt;
+  }
+  vpOutlineFit lamp = fit.result();
+  static const double sharp = 0.1; // share of the radius: a bright core in a glow has no edge of its own
+  if (lamp.blur > std::max(1.0, sharp * 0.5 * lamp.outline.diameter())) {
+    return std::nullopt;
+  }
+  static const double pulled = 0.04; // px, by what light there is beside the edge
+  lamp.outline.centreCovariance += pulled * pulled * Eigen::Matrix2d::Identity();
+  return lamp;
+}
+
+//! Where edges are uneven and leave much of the light about them unexplained, some are not the lamp's.
+void addCompanionDoubt(vpLampOutline &ellipse, double misfit, double light)
+{
+  static const double usual = 0.03; // share of the light
+  const double unexplained = std::sqrt(misfit) / std::max(light, 1.0);
+  if (unexplained > usual) {
+    const double doubt = 0.5 * ellipse.diameter() * unexplained;
+    ellipse.centreCovariance += doubt * doubt * Eigen::Matrix2d::Identity();
+  }
+}
+
 //! Whether each sample lies where its number says.
 bool isAligned(const std::vector<double> &positions)
 {
@@ -158,30 +250,36 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
   const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
   vpEdgeFit<vpEllipseModel>::Memory memory;
-  const bool aligned = isAligned(samplePositions);
-  vpEdgeFit<vpEllipseModel> ellipse(lines, linePositions, samplePositions, aligned, start, memory);
+  const vpEdgeFitPicture picture{lines, linePositions, samplePositions, isAligned(samplePositions)};
+  vpEdgeFit<vpEllipseModel> ellipse(picture, start, memory);
   // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
   static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
   const bool whole = roi.lampness > nearlyPerfect * vpChordShape::mostLampness(2 * roi.box.height);
   bool isEllipse = whole && ellipse.run(roi.box, shapeSigma, {maxIterations, 2, 0.005, true}, likelyBlur) &&
                    ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
   if (!isEllipse) {
-    ellipse = vpEdgeFit<vpEllipseModel>(lines, linePositions, samplePositions, aligned, start, memory);
+    ellipse = vpEdgeFit<vpEllipseModel>(picture, start, memory);
     isEllipse = ellipse.run(roi.box, shapeSigma, {maxIterations}) && holds(ellipse.result(), roi);
+  }
+  static const double alone = 0.8; // evenness of a lamp without other light beside it
+  const double evenness = isEllipse ? ellipse.evenness() : 0;
+  if (evenness < alone) {
+    if (const auto lamp = withoutCompanion(picture, roi, shapeSigma, maxIterations, evenness)) {
+      return *lamp;
+    }
   }
   if (isEllipse) {
     best = ellipse.result();
     addElongationDoubt(best.outline, roi, ellipse.prior());
   }
-  bool even = isEllipse && ellipse.evenness() > evenEdge;
+  bool even = evenness > evenEdge;
   static const double round = 0.015; // share of the radius: no rectangle is that near to an ellipse
   const bool maySquare = !even || ellipseMisfit > round * start.radius();
   const double sidesMisfit =
       maySquare ? vpChordShape::rectangleMisfit(ends) : std::numeric_limits<double>::infinity();
   if (sidesMisfit <= 3 * ellipseMisfit) {
     vpEdgeFit<vpQuadrilateralModel>::Memory ofSides;
-    vpEdgeFit<vpQuadrilateralModel> sides(lines, linePositions, samplePositions, aligned,
-                                          vpQuadrilateralModel::from(ends), ofSides);
+    vpEdgeFit<vpQuadrilateralModel> sides(picture, vpQuadrilateralModel::from(ends), ofSides);
     if (sides.run(roi.box, shapeSigma, {maxIterations}) && sides.evenness() > evenEdge &&
         holds(sides.result(), roi)) {
       if (even) {
@@ -201,6 +299,8 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
       best.blur = softMisfit * start.radius();
     }
     centreOnLight(best.outline, lines, roi);
+  } else if (even && evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
+    addCompanionDoubt(best.outline, ellipse.misfit(), brightestOf(lines, roi));
   }
   return best;
 }

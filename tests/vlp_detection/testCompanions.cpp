@@ -1,0 +1,92 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Dimmer light that blinks with a lamp: its ghost in a pane of glass, a rim or a plate that it lights.
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_detection/vpOutlineFitter.h>
+
+#include "paintedLamps.h"
+
+using namespace paintedLamps;
+
+namespace
+{
+const double radius = 32;
+const double phases[] = {0, 0.29, 0.57, 0.83};
+
+vpPaintedLamp lamp(double phase)
+{
+  return disc(95.3, 94.8, radius, 170, 8, 0.5, phase);
+}
+
+//! Of all regions in the picture, that whose outline's middle is nearest to the lamp's.
+vpLampOutline outlineOf(const vpLampPicture &picture)
+{
+  const vpImage<unsigned char> I = picture.render();
+  const vpLinePicture lines(I, false);
+  std::vector<double> positions(picture.width); // of lines and samples alike: the picture is square
+  std::iota(positions.begin(), positions.end(), 0.0);
+  const Eigen::Vector2d centre = picture.lamps[0].centre;
+  vpLampOutline nearest;
+  for (const vpLedRoi &roi : vpLedRoiDetector().detect(lines.grey)) {
+    const vpLampOutline outline = vpOutlineFitter().fit(lines.grey, positions, positions, roi).outline;
+    if (nearest.shape == vpLampOutline::Shape::region ||
+        (outline.centre - centre).norm() < (nearest.centre - centre).norm())
+      nearest = outline;
+  }
+  return nearest;
+}
+
+//! Whether the outline is the lamp's; or, of a \e bright companion, says how far from it it may be.
+void expectTheLamp(const vpLampOutline &outline, const vpPaintedLamp &lamp, bool bright)
+{
+  const Eigen::Vector2d error = outline.centre - lamp.centre;
+  const double sigmas = std::sqrt(error.dot(outline.centreCovariance.inverse() * error));
+  static const double little = 0.06; // px: an edge a pixel beside the lamp's is no edge of its own
+  EXPECT_TRUE(sigmas < 5 || error.norm() < little)
+      << "off by " << error.transpose() << ", " << sigmas << " sigma";
+  if (!bright) {
+    EXPECT_LT(error.norm(), 0.15);
+    EXPECT_NEAR(outline.diameter(), 2 * radius, 0.5);
+  }
+}
+} // namespace
+
+TEST(Companions, GhostOfALampDoesNotMoveIt)
+{
+  for (const double share : {0.04, 0.1, 0.2, 0.3})
+    for (const double apart : {0.25, 0.5, 1.0}) // radii
+      for (const double angle : {0.4, 2.0, 4.1})
+        for (const double phase : phases) {
+          vpPaintedLamp ghost = lamp(phase);
+          ghost.amplitude *= share;
+          ghost.centre += apart * radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+          SCOPED_TRACE(testing::Message() << "share " << share << ", " << apart << " radii towards " << angle
+                                          << ", phase " << phase);
+          const vpLampPicture picture = pictureOf({lamp(phase), ghost}, 190, 190);
+          expectTheLamp(outlineOf(picture), picture.lamps[0], share > 0.25);
+        }
+}
+
+TEST(Companions, RimThatALampLightsIsNoPartOfIt)
+{
+  for (const double share : {0.05, 0.1, 0.2})
+    for (const double aside : {0.0, 0.1, 0.17}) // radii
+      for (const double phase : phases) {
+        vpPaintedLamp rim = lamp(phase);
+        rim.a = rim.b = 1.2 * radius;
+        rim.amplitude *= share;
+        rim.centre.x() += aside * radius;
+        SCOPED_TRACE(testing::Message()
+                     << "share " << share << ", " << aside << " radii aside, phase " << phase);
+        const vpLampPicture picture = pictureOf({lamp(phase), rim}, 190, 190);
+        expectTheLamp(outlineOf(picture), picture.lamps[0], false);
+      }
+}
