@@ -11,12 +11,14 @@
 */
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_detection/vpLedRoiDetector.h>
+#include <visp3/vlp_detection/vpOutlineFitter.h>
 
 #include "common/vpLampPicture.h"
 
@@ -48,6 +50,19 @@ inline vpLampPicture pictureOf(const std::vector<vpPaintedLamp> &lamps, int widt
   picture.height = height;
   picture.blur = 0.7;
   return picture;
+}
+
+//! Of all regions that are found in a square picture.
+inline std::vector<vpLampOutline> outlinesIn(const vpLampPicture &picture)
+{
+  const vpImage<unsigned char> I = picture.render();
+  const vpLinePicture lines(I, picture.columns);
+  std::vector<double> positions(picture.width); // of lines and samples alike
+  std::iota(positions.begin(), positions.end(), 0.0);
+  std::vector<vpLampOutline> outlines;
+  for (const vpLedRoi &roi : vpLedRoiDetector().detect(lines.grey))
+    outlines.push_back(vpOutlineFitter().fit(lines.grey, positions, positions, roi).outline);
+  return outlines;
 }
 
 //! One lamp in the middle of a picture that leaves its own radius and 20 px free around it.

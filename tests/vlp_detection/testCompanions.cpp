@@ -4,13 +4,9 @@
  */
 // Dimmer light that blinks with a lamp: its ghost in a pane of glass, a rim or a plate that it lights.
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <vector>
 
 #include <gtest/gtest.h>
-#include <visp3/vlp_detection/vpOutlineFitter.h>
 
 #include "paintedLamps.h"
 
@@ -29,18 +25,12 @@ vpPaintedLamp lamp(double phase)
 //! Of all regions in the picture, that whose outline's middle is nearest to the lamp's.
 vpLampOutline outlineOf(const vpLampPicture &picture)
 {
-  const vpImage<unsigned char> I = picture.render();
-  const vpLinePicture lines(I, false);
-  std::vector<double> positions(picture.width); // of lines and samples alike: the picture is square
-  std::iota(positions.begin(), positions.end(), 0.0);
   const Eigen::Vector2d centre = picture.lamps[0].centre;
   vpLampOutline nearest;
-  for (const vpLedRoi &roi : vpLedRoiDetector().detect(lines.grey)) {
-    const vpLampOutline outline = vpOutlineFitter().fit(lines.grey, positions, positions, roi).outline;
+  for (const vpLampOutline &outline : outlinesIn(picture))
     if (nearest.shape == vpLampOutline::Shape::region ||
         (outline.centre - centre).norm() < (nearest.centre - centre).norm())
       nearest = outline;
-  }
   return nearest;
 }
 

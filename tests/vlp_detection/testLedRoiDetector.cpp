@@ -4,11 +4,9 @@
  */
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <visp3/vlp_detection/vpOutlineFitter.h>
 
 #include "paintedLamps.h"
 
@@ -220,16 +218,12 @@ namespace
 {
 vpLampOutline fitOnly(const vpLampPicture &picture)
 {
-  const vpImage<unsigned char> I = picture.render();
-  const vpLinePicture lines(I, picture.columns);
-  const std::vector<vpLedRoi> rois = vpLedRoiDetector().detect(lines.grey);
-  if (rois.size() != 1) {
-    ADD_FAILURE() << "found " << boxes(rois);
+  const std::vector<vpLampOutline> outlines = outlinesIn(picture);
+  if (outlines.size() != 1) {
+    ADD_FAILURE() << "found " << outlines.size() << " regions";
     return {};
   }
-  std::vector<double> positions(picture.width); // of lines and samples alike: the picture is square
-  std::iota(positions.begin(), positions.end(), 0.0);
-  return vpOutlineFitter().fit(lines.grey, positions, positions, rois[0]).outline;
+  return outlines[0];
 }
 
 vpPaintedLamp squareLamp(double side, double angle, double phase)
@@ -276,6 +270,30 @@ TEST(LedRoiDetector, LitCornersOfTurnedSquares)
       }
     }
   EXPECT_GT(lit, 20);
+}
+
+// Nothing shows where a side beyond the picture's border lies.
+TEST(LedRoiDetector, SquareOfWhichASideIsNotShownHasNoOutline)
+{
+  const double side = 86;
+  const int size = 384;
+  int told = 0;
+  for (const double angle : {0.1, 0.35, 0.6})
+    for (const double beyond : {-0.2, 0.0, 0.2, 0.4, 0.55}) // of the middle, inside the border: sides
+      for (const double phase : phases) {
+        vpPaintedLamp lamp = squareLamp(side, angle, phase);
+        lamp.centre = {size - beyond * side, 190.3};
+        lamp.rectangle(side, side);
+        for (const vpLampOutline &outline : outlinesIn(pictureOf({lamp}, size, size))) {
+          const Eigen::Vector2d error = outline.centre - lamp.centre;
+          const bool region = outline.shape == vpLampOutline::Shape::region;
+          told += region ? 0 : 1;
+          EXPECT_TRUE(region || error.dot(outline.centreCovariance.inverse() * error) < 30)
+              << "angle " << angle << ", " << beyond << " sides inside, phase " << phase << ": off by "
+              << error.transpose() << " px";
+        }
+      }
+  EXPECT_GT(told, 30) << "of those that show all sides";
 }
 
 TEST(LedRoiDetector, NothingInEmptyAndTinyPictures)

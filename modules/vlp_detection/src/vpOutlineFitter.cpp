@@ -204,6 +204,29 @@ void addCompanionDoubt(vpLampOutline &ellipse, double misfit, double light)
   }
 }
 
+/*!
+  Whether the picture shows enough of each side of a quadrilateral. Where one that is not shown lies, nothing
+  but the shapes that lamps have would say.
+*/
+bool showsSides(const vpLampOutline &quadrilateral, const cv::Size &picture)
+{
+  static const double enough = 0.1; // of a side
+  static const int points = 40;     // along it
+  for (size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d &from = quadrilateral.corners[i], &to = quadrilateral.corners[(i + 1) % 4];
+    int shown = 0;
+    for (int k = 0; k < points; ++k) {
+      const Eigen::Vector2d point = from + (k + 0.5) / points * (to - from);
+      shown +=
+          point.x() > 0 && point.y() > 0 && point.x() < picture.width - 1 && point.y() < picture.height - 1;
+    }
+    if (shown < enough * points) {
+      return false;
+    }
+  }
+  return true;
+}
+
 //! Whether each sample lies where its number says.
 bool isAligned(const std::vector<double> &positions)
 {
@@ -291,7 +314,9 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
       even = true;
     }
   }
-  if (!even && (roi.cutAcross || roi.cutAlong)) {
+  const bool cut = roi.cutAcross || roi.cutAlong;
+  const bool sided = best.outline.shape == vpLampOutline::Shape::quadrilateral;
+  if (cut && (!even || (sided && !showsSides(best.outline, lines.size())))) {
     best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
   } else if (!even && (isEllipse || ellipseMisfit < std::min(softMisfit * start.radius(), 2 * sidesMisfit))) {
     if (!isEllipse) {
