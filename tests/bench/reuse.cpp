@@ -5,6 +5,8 @@
 // Few identifiers over many lamps: how often a picture alone says where the robot is, and how long that
 // takes; and how often geometry tells a reflection from its lamp. Prints two tables for BENCHMARK.md.
 
+#include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <iomanip>
 #include <iostream>
@@ -187,7 +189,7 @@ void reflections(const std::string &name, const vpLampMap &map, size_t inView, b
 int main(int argc, char **argv)
 {
   if (argc > 1) {
-    places = std::stoi(argv[1]);
+    places = std::max(1, std::atoi(argv[1]));
   }
   std::cout
       << identifiers << " identifiers, " << places

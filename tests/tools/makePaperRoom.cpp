@@ -171,7 +171,7 @@ void make(const std::filesystem::path &folder)
 
 int main(int argc, char **argv)
 {
-  if (argc != 2) {
+  if (argc != 2 || argv[1][0] == '-') {
     std::cerr << "usage: makePaperRoom FOLDER" << std::endl;
     return 2;
   }

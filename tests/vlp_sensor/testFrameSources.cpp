@@ -85,10 +85,14 @@ TEST(PictureSequence, PatternFromTheFirstNumberToTheFirstMissing)
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_EQ(frames[0], folder / "100%_0003.png 3 0.000000");
   EXPECT_EQ(frames[2], folder / "100%_0005.png 5 2.000000");
+  EXPECT_EQ(sequence.remark(),
+            folder / "100%_0006.png: missing, expected numbers without gaps; pictures from " +
+                (folder / "100%_0007.png on are left out, 2"));
 
   picture(folder, "9.png", 9);
   picture(folder, "10.png", 10);
   EXPECT_EQ(vpPictureSequence::fromPattern(folder / "%d.png").size(), 2u);
+  EXPECT_EQ(vpPictureSequence::fromPattern(folder / "%d.png").remark(), "");
 }
 
 TEST(PictureSequence, BadPatternsAreRefused)

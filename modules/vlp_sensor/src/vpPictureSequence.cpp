@@ -75,21 +75,22 @@ public:
            m_suffix;
   }
 
-  //! The lowest number whose file exists.
-  std::optional<std::uint64_t> first() const
+  //! All numbers whose file exists, the lowest first.
+  std::vector<std::uint64_t> numbers() const
   {
     const size_t slash = m_prefix.rfind('/');
     const std::string folder = slash == std::string::npos ? "" : m_prefix.substr(0, slash + 1);
-    std::optional<std::uint64_t> least;
+    std::vector<std::uint64_t> found;
     std::error_code error;
     for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
          entry.increment(error)) {
       const std::optional<std::uint64_t> number = numberOf(folder + entry->path().filename().string());
-      if (number && (!least || *number < *least)) {
-        least = number;
+      if (number) {
+        found.push_back(*number);
       }
     }
-    return least;
+    std::sort(found.begin(), found.end());
+    return found;
   }
 
 private:
@@ -127,16 +128,22 @@ vpPictureSequence::vpPictureSequence(const std::vector<std::string> &files)
 vpPictureSequence vpPictureSequence::fromPattern(const std::string &pattern)
 {
   const NumberedName name(pattern);
-  const std::optional<std::uint64_t> first = name.first();
-  if (!first) {
+  const std::vector<std::uint64_t> numbers = name.numbers();
+  if (numbers.empty()) {
     throw vpException(vpException::ioError, vpShown(pattern) + ": no such file, whatever the number");
   }
-  std::vector<std::string> files;
-  std::error_code ignored;
-  for (std::uint64_t number = *first; fs::exists(name(number), ignored); ++number) {
-    files.push_back(name(number));
+  std::vector<std::string> files{name(numbers[0])};
+  while (files.size() < numbers.size() && numbers[files.size()] == numbers[0] + files.size()) {
+    files.push_back(name(numbers[files.size()]));
   }
-  return vpPictureSequence(files);
+  vpPictureSequence sequence(files);
+  if (files.size() < numbers.size()) {
+    sequence.m_remark = vpShown(name(numbers[0] + files.size())) +
+                        ": missing, expected numbers without gaps; pictures from " +
+                        vpShown(name(numbers[files.size()])) + " on are left out, " +
+                        std::to_string(numbers.size() - files.size());
+  }
+  return sequence;
 }
 
 vpPictureSequence vpPictureSequence::fromRun(const std::string &folder)

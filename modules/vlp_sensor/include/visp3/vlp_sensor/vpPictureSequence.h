@@ -23,8 +23,8 @@ public:
 
   /*!
     The files of a pattern with one number in the file's name, as `pictures/frame%04d.png`: from the lowest
-    number there is, one by one, up to the first that is missing. \throw vpException where the pattern has
-    anything else than one %d-like conversion, or fits no file.
+    number there is, one by one, up to the first that is missing; remark() tells where there are more. \throw
+    vpException where the pattern has anything else than one %d-like conversion, or fits no file.
   */
   static vpPictureSequence fromPattern(const std::string &pattern);
 
