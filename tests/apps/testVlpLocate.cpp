@@ -13,6 +13,8 @@
 #include <opencv2/imgproc.hpp>
 #include <visp3/vlp_core/vpCsvTable.h>
 #include <visp3/vlp_core/vpModulation.h>
+#include <visp3/vlp_core/vpTrajectory.h>
+#include <visp3/vlp_core/vpVlpRig.h>
 
 #include "apps/vpLocateScene.h"
 #include "common/vpProcess.h"
@@ -125,6 +127,36 @@ TEST(VlpLocate, SolversAndAttitudesAgree)
   EXPECT_NEAR(free[0][1], x, 0.05);
   EXPECT_NEAR(free[0][2], y, 0.05);
   EXPECT_NEAR(free[0][6], std::sin(yaw / 2), 5e-3);
+}
+
+// The middle of a disc lies elsewhere in its ellipse than the rig's attitude has it, by 2 mm here.
+TEST(VlpLocate, FreeAttitudePlacesTheMiddlesOfDiscsUnderTheLeanThatItFinds)
+{
+  const vpTemporaryFolder folder;
+  const std::string data = VLP_DATA_DIR, run = folder / "run", poses = folder / "poses.tum";
+  std::string lamps = "lamps:\n";
+  for (const char *lamp : {"A, position_m: [-0.5, 0.5, 1.5], frequency_hz: 1000",
+                           "B, position_m: [-0.46, -0.42, 1.8], frequency_hz: 1400",
+                           "C, position_m: [0.46, 0.49, 1.5], frequency_hz: 1900",
+                           "D, position_m: [0.5, -0.43, 1.3], frequency_hz: 2500"})
+    lamps += std::string("  - {id: ") + lamp + ", diameter_m: 0.3, duty: 0.5}\n";
+  folder.write("lamps.yaml", lamps);
+  const std::string scenario = folder.write(
+      "scenario.yaml", "rig: " + data +
+                           "/rigs/ub300-800x600.yaml\nlamps: lamps.yaml\n"
+                           "frames: {rate_hz: 12}\nmotion: {type: stations, points: [{at_m: [0, 0]}, "
+                           "{at_m: [0.02, -0.03], yaw_deg: 170}], frames_each: 2}\n"
+                           "truth: {tilt_deg: [4, -3]}\n");
+  vpProcess simulate("vlp-simulate", {"--scenario", scenario, "--out", run});
+  ASSERT_EQ(simulate.wait(), 0) << simulate.err();
+  stdoutOf({"--run", run, "--attitude", "free", "--no-track", "--poses", poses});
+  const vpTrajectory found = vpTrajectory::load(poses), truth = vpTrajectory::load(run + "/truth.tum");
+  const vpHomogeneousMatrix bMc = vpVlpRig::load(run + "/rig.yaml").bMc;
+  ASSERT_EQ(found.size(), 4u);
+  for (const vpTimedPose &pose : found.poses()) {
+    const vpHomogeneousMatrix wMc = pose.wMb * bMc, level = *truth.at(pose.timestamp) * bMc;
+    EXPECT_LT(std::hypot(wMc[0][3] - level[0][3], wMc[1][3] - level[1][3]), 0.0005);
+  }
 }
 
 TEST(VlpLocate, FixesAndSeenHoldTheirColumns)

@@ -248,6 +248,9 @@ void vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> 
   fix.degreesOfFreedom = 0;
   fix.ambiguous = false;
   m_scratch->displaced = false;
+  if (attitudeIsFree()) {
+    placeMiddles(location.observations, filter.pose().wMb.rotation());
+  }
   filter.mark(location.timestamp);
   for (size_t i : inTime(location, usable)) {
     vpLampObservation &seen = location.observations[i];

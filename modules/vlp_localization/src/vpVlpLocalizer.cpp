@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "vpLampConsensus.h"
+#include "vpLampGeometry.h"
 #include "vpLampNames.h"
 #include "vpLampTrust.h"
 #include "vpVlpScratch.h"
@@ -205,14 +206,41 @@ const vpVlpFilter &vpVlpLocalizer::filterAt(double time) const
   return there;
 }
 
-//! The pose of these lamps alone, of two of them or of all that agree with each other.
-vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const
+//! Whether roll and pitch are estimated with the pose.
+bool vpVlpLocalizer::attitudeIsFree() const
 {
-  const vpLampConsensus consensus(lampsOf(observations), m_rig, observations, mapTolerance,
-                                  outlierLikelihood);
-  const vpVlpFix fix = consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
-    return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
-  });
+  return manyLamps.attitude == vpManyLampSolver::Attitude::free && solver == Solver::all;
+}
+
+/*!
+  Places the lamps' middles in their outlines anew. The detector did so for a robot that stands level; a
+  camera that leans otherwise sees the middle of a disc elsewhere in its ellipse.
+*/
+void vpVlpLocalizer::placeMiddles(std::vector<vpLampObservation> &observations,
+                                  const Eigen::Matrix3d &wRb) const
+{
+  const Eigen::Vector3d vertical = vpMountFrame(m_rig).bRc.transpose() * wRb.row(2).transpose();
+  for (vpLampObservation &lamp : observations) {
+    lamp.point = lamp.outline.middle(m_rig.camera, vertical);
+  }
+}
+
+//! The pose of these lamps alone, of two of them or of all that agree with each other.
+vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations,
+                               const std::vector<size_t> &usable) const
+{
+  auto solved = [&] {
+    const vpLampConsensus consensus(lampsOf(observations), m_rig, observations, mapTolerance,
+                                    outlierLikelihood);
+    return consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
+      return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
+    });
+  };
+  vpVlpFix fix = solved();
+  if (fix.valid && attitudeIsFree()) {
+    placeMiddles(observations, vpBasePose::of(fix.wMb).wRb);
+    fix = solved();
+  }
   vpLampConsensus::explain(fix, usable, observations);
   return fix;
 }
@@ -232,7 +260,7 @@ vpVlpLocalizer::lampsOf(const std::vector<vpLampObservation> &observations) cons
 vpLampMatch vpVlpLocalizer::matchByPlace(const std::vector<vpLampObservation> &observations,
                                          const std::vector<size_t> &usable, double time) const
 {
-  if (manyLamps.attitude == vpManyLampSolver::Attitude::free && solver == Solver::all) {
+  if (attitudeIsFree()) {
     vpLampMatch match;
     match.refusal = "lamps that blink alike are told apart by the attitude of the mount only, and it is free";
     return match;

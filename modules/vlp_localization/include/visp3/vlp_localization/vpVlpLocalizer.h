@@ -90,7 +90,9 @@ private:
     double time = 0; // s
   };
 
-  vpVlpFix solve(std::vector<vpLampObservation> &observations, std::vector<size_t> usable) const;
+  bool attitudeIsFree() const;
+  void placeMiddles(std::vector<vpLampObservation> &observations, const Eigen::Matrix3d &wRb) const;
+  vpVlpFix solve(std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable) const;
   void solveAlone(vpVlpLocation &location, const std::vector<size_t> &usable);
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
   bool vague(double time) const;
