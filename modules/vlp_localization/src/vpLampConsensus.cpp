@@ -224,12 +224,48 @@ vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &
     fix = withoutWorst(lamps, solver);
   }
   if (fix.valid) {
+    fix = withoutMisplaced(fix, lamps, solver);
     fix = withoutWrongSizes(fix, usable, lamps, solver);
   }
   if (fix.valid && fix.degreesOfFreedom > 0) {
     fix.covariance *= std::max(1.0, fix.chiSquare / fix.degreesOfFreedom);
   }
   return fix;
+}
+
+/*!
+  A fix without the one lamp that is elsewhere than the map says, where that is as good as certain: under what
+  map and pictures say of themselves, all lamps contradict each other, without that lamp they do not, and
+  without any other they still do.
+*/
+vpVlpFix vpLampConsensus::withoutMisplaced(const vpVlpFix &all, std::vector<vpLampSight> &lamps,
+                                           const Solve &solver) const
+{
+  static const double contradiction = 1e-6, agreement = 0.01; // probabilities
+  static const int enough = 4; // degrees of freedom: of three lamps left, two bear the third out
+  auto likelihood = [](const vpVlpFix &fix) {
+    return fix.valid ? chiSquareTail(fix.chiSquare, fix.degreesOfFreedom) : 0;
+  };
+  if (all.degreesOfFreedom < enough || likelihood(all) > contradiction) {
+    return all;
+  }
+  vpVlpFix best = all;
+  std::vector<vpLampSight> kept = lamps;
+  for (size_t left = 0; left < lamps.size(); ++left) {
+    std::vector<vpLampSight> others = lamps;
+    others.erase(others.begin() + static_cast<long>(left));
+    const vpVlpFix fix = solver(others);
+    const double likely = likelihood(fix);
+    if (likely > contradiction && likelihood(best) > contradiction) {
+      return all; // it may be one or the other
+    }
+    if (likely > agreement) {
+      best = fix;
+      kept = others;
+    }
+  }
+  lamps = kept;
+  return best;
 }
 
 //! Drops the lamp that the others agree best without.
@@ -266,7 +302,7 @@ void vpLampConsensus::explain(const vpVlpFix &fix, const std::vector<size_t> &us
     if (!lamp.accepted) {
       lamp.remark = !fix.valid              ? fix.refusal
                     : fix.lamps.size() == 2 ? "not of the pair with the best geometry"
-                                            : "not where the other lamps expect it";
+                                            : elsewhere;
     }
   }
 }

@@ -20,6 +20,8 @@ BEGIN_VISP_NAMESPACE
 class vpLampConsensus
 {
 public:
+  static constexpr const char *elsewhere = "not where the other lamps expect it"; // a remark
+
   using Solve = std::function<vpVlpFix(const std::vector<vpLampSight> &)>;
 
   //! \param lamps The map's lamp of each observation; nullptr: none.
@@ -37,9 +39,10 @@ public:
   /*!
     The pose of all usable lamps where their residuals are likely under all stated doubts and `mapTolerance`.
     Otherwise that of those that do agree, up to a quarter of the lamps left out one by one; otherwise a
-    refusal. Lamps that look much larger or smaller than the map says are left out too, as long as more do
-    not. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up to what they show
-    (Birge's ratio).
+    refusal. One that contradicts all others under the stated doubts alone, which agree without it, is left
+    out within `mapTolerance`, too. Lamps that look much larger or smaller than the map says are left out too,
+    as long as more do not. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up
+    to what they show (Birge's ratio).
   */
   vpVlpFix solve(const std::vector<size_t> &usable, const Solve &solver) const;
 
@@ -51,6 +54,7 @@ private:
   std::vector<vpLampSight> sights(const std::vector<size_t> &which) const;
   double misfit(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
   bool agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
+  vpVlpFix withoutMisplaced(const vpVlpFix &all, std::vector<vpLampSight> &lamps, const Solve &solver) const;
   vpVlpFix withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const;
   std::vector<std::string> wrongSizes(const vpVlpFix &fix, const std::vector<size_t> &usable,
                                       std::string &remark) const;

@@ -141,11 +141,18 @@ bool vpLampTrust::knows(const vpLamp &lamp) const
   return found != m_past.end() && found->second.frames >= known;
 }
 
+bool vpLampTrust::doubts(const vpLamp &lamp) const
+{
+  const auto found = m_past.find(lamp.id);
+  return found != m_past.end() && found->second.doubted;
+}
+
 bool vpLampTrust::inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const
 {
   vpVlpFilter::Innovation moved = innovation;
   moved.ray -= offset(lamp);
-  return moved.distance(knows(lamp) ? placeTolerance : mapTolerance) < gate * gate;
+  const double tolerance = knows(lamp) ? placeTolerance : doubts(lamp) ? doubtedTolerance : mapTolerance;
+  return moved.distance(tolerance) < gate * gate;
 }
 
 Eigen::Vector2d vpLampTrust::offset(const vpLamp &lamp) const
@@ -172,6 +179,7 @@ void vpLampTrust::believe(const vpLamp &lamp, const vpLampObservation &seen,
 {
   Past &past = m_past[lamp.id];
   ++past.frames;
+  past.doubted = false;
   const double share = std::max(memory, 1.0 / past.frames);
   past.offset += share * (innovation.ray - past.offset);
   past.doubt = (1 - share) * (1 - share) * past.doubt + share * share * innovation.covariance;

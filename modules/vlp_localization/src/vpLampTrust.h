@@ -31,7 +31,8 @@ class vpLampTrust
 public:
   double mapTolerance =
       0.03; // m, how far a lamp that was not seen before may hang from where the map says, sigma
-  double placeTolerance = 0.0005; // m, how far one may then seem to move, sigma
+  double doubtedTolerance = 0.005; // m, one that other lamps have shown to hang elsewhere, sigma
+  double placeTolerance = 0.0005;  // m, how far one may then seem to move, sigma
   double sizeTolerance = 0.015; // share of its extent by which a lamp may seem smaller or larger than it was
   double gate = 4;              // standard deviations
 
@@ -51,7 +52,13 @@ public:
   void believe(const vpLamp &lamp, const vpLampObservation &seen, const vpVlpFilter::Innovation &innovation,
                const vpLampExtent &expected);
 
-  //! Where lamps were seen; how large they are stays known.
+  //! Other lamps have, or have not, shown that it hangs elsewhere than the map says.
+  void doubtPlace(const vpLamp &lamp, bool doubted) { m_past[lamp.id].doubted = doubted; }
+
+  //! Whether they have, and it was not seen in its place since.
+  bool doubts(const vpLamp &lamp) const;
+
+  //! Where lamps were seen; how large they are stays known, and which are doubted.
   void forgetPlaces();
   /*!
     Width and height, px, of the picture of a lamp's disc or square as seen from \e wMb by a base that moves
@@ -69,6 +76,7 @@ public:
 private:
   struct Past {
     int frames = 0;
+    bool doubted = false;        // by doubtPlace()
     int sizes = 0;               // frames that told its size
     int smaller = 0, larger = 0; // frames in a row that it was so
     vpLampOutline::Shape shape = vpLampOutline::Shape::region;

@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "vpLampConsensus.h"
 #include "vpLampGeometry.h"
 #include "vpLampTrust.h"
 #include "vpSurprise.h"
@@ -26,6 +27,13 @@ void vpVlpLocalizer::begin(vpVlpLocation &location)
   bool moving = startAt(location);
   m_trust->forgetPlaces();
   m_trust->mapTolerance = mapTolerance;
+  const std::vector<const vpLamp *> &lamps = lampsOf(location.observations);
+  for (size_t i = 0; i < lamps.size(); ++i) {
+    const vpLampObservation &seen = location.observations[i];
+    if (lamps[i] != nullptr && (seen.accepted || seen.remark == vpLampConsensus::elsewhere)) {
+      m_trust->doubtPlace(*lamps[i], !seen.accepted);
+    }
+  }
   m_disagreements = m_followed = 0; // what contradicts the claims of camera and map does so still
   m_refused = false;
   const std::vector<size_t> members = membersOf(location);

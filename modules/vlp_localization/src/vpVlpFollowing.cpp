@@ -251,11 +251,16 @@ void vpVlpLocalizer::correct(vpVlpLocation &location, const std::vector<size_t> 
   if (attitudeIsFree()) {
     placeMiddles(location.observations, filter.pose().wMb.rotation());
   }
+  const bool calm = filter.unrest() <= manoeuvring;
   filter.mark(location.timestamp);
   for (size_t i : inTime(location, usable)) {
     vpLampObservation &seen = location.observations[i];
     const vpLamp *lamp = lamps[i];
     if (lamp == nullptr) {
+      continue;
+    }
+    if (!calm && m_trust->doubts(*lamp)) { // many motions would bring it to its place
+      seen.remark = misplaced;
       continue;
     }
     filter.advance(timeOf(location, seen));

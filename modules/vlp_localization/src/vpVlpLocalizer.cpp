@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "vpLampConsensus.h"
 #include "vpLampGeometry.h"
@@ -229,10 +230,18 @@ void vpVlpLocalizer::placeMiddles(std::vector<vpLampObservation> &observations,
 vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations,
                                const std::vector<size_t> &usable) const
 {
+  const std::vector<const vpLamp *> &lamps = lampsOf(observations);
+  std::vector<size_t> which;
+  std::copy_if(usable.begin(), usable.end(), std::back_inserter(which),
+               [&](size_t i) { return lamps[i] == nullptr || !m_trust->doubts(*lamps[i]); });
+  static const size_t enough = 3; // of which one bears the others out
+  if (which.size() < enough) {
+    which = usable;
+  }
   auto solved = [&] {
     const vpLampConsensus consensus(lampsOf(observations), m_rig, observations, mapTolerance,
                                     outlierLikelihood);
-    return consensus.solve(usable, [this](const std::vector<vpLampSight> &lamps) {
+    return consensus.solve(which, [this](const std::vector<vpLampSight> &lamps) {
       return solver == Solver::two ? twoLamps.solveBestPair(lamps, m_rig) : manyLamps.solve(lamps, m_rig);
     });
   };
