@@ -78,6 +78,12 @@ void vpLocateSummary::add(const vpLocatedFrame &located)
     m_refusals.add(fix.refusal);
   }
   for (const vpLampObservation &lamp : located.location.observations) {
+    static const std::string outOfPlace = "not where "; // as such remarks begin
+    if (fix.valid && !lamp.id.empty()) {
+      Places &places = m_places[lamp.id];
+      places.right += lamp.accepted ? 1 : 0;
+      places.wrong += !lamp.accepted && lamp.remark.compare(0, outOfPlace.size(), outOfPlace) == 0 ? 1 : 0;
+    }
     if (lamp.accepted) {
       ++m_counted;
     } else if (fix.valid || lamp.remark != fix.refusal) { // that is said already
@@ -106,6 +112,14 @@ void vpLocateSummary::log() const
     spdlog::info("{} for the position{}",
                  counted(m_counted, "lamp image") + (m_counted == 1 ? " counts" : " count"),
                  m_left == 0 ? "" : "; others do not: " + m_remarks.text());
+  }
+  for (const auto &[id, places] : m_places) {
+    static const size_t enough = 5, times = 4; // images out of place; as many as of those in it
+    if (places.wrong >= enough && places.wrong > times * places.right) {
+      spdlog::warn(
+          "lamp {} is not where the map has it in {} of {} images: measure it, or let vlp-calibrate lamps",
+          vpOneLine(id), places.wrong, places.wrong + places.right);
+    }
   }
 }
 

@@ -54,6 +54,10 @@ private:
   double m_compute = 0; // s, over all frames
   vpReasonCount m_refusals;
   vpReasonCount m_remarks;
+  struct Places {
+    size_t right = 0, wrong = 0; // images of a lamp where the map has it, and elsewhere
+  };
+  std::map<std::string, Places> m_places; // by its id
 };
 
 END_VISP_NAMESPACE

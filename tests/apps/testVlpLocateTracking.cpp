@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_core/vpCsvTable.h>
+#include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpTrajectory.h>
 #include <visp3/vlp_evaluation/vpFixLog.h>
@@ -391,4 +392,20 @@ TEST(VlpLocateTracking, LampsThatPassEachOtherMoveNoPoseFartherThanItSays)
     EXPECT_NEAR(table.number(row, 2), 0, 5 * table.number(row, 8)) << row;
     EXPECT_NEAR(table.number(row, 3), 0, 5 * table.number(row, 9)) << row;
   }
+}
+
+TEST(VlpLocateTracking, LampThatHangsElsewhereIsNamed)
+{
+  const vpTemporaryFolder folder;
+  const std::string run = folder / "run";
+  vpProcess simulate("vlp-simulate", {"--scenario", std::string(VLP_DATA_DIR) + "/scenarios/paper-still.yaml",
+                                      "--frames", "20", "--format", "pgm", "--out", run});
+  ASSERT_EQ(simulate.wait(), 0) << simulate.err();
+  vpLampMap map = vpLampMap::load(run + "/lamps.yaml");
+  map.lamps[1].position.x() += 0.05;
+  map.save(run + "/lamps.yaml");
+  vpProcess locate("vlp-locate", {"--run", run, "--fixes", folder / "fixes.csv"});
+  ASSERT_EQ(locate.wait(), 0) << locate.err();
+  EXPECT_NE(locate.err().find("lamp " + map.lamps[1].id + " is not where the map has it"), std::string::npos)
+      << locate.err();
 }
