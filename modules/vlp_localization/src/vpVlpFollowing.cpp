@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "vpLampConsensus.h"
+#include "vpLampGeometry.h"
 #include "vpLampTrust.h"
 #include "vpSurprise.h"
 #include "vpVlpScratch.h"
@@ -60,6 +61,9 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
              inexplicable = motion == Motion::inexplicable;
   const int before = std::exchange(m_disagreements, 0);
   if (!few && !half && !lost && !contradictory && !inexplicable) {
+    if (motion == Motion::sudden) {
+      doubtSuddenMotion(location, apart, blinking);
+    }
     return;
   }
   const vpVlpFix alone = solve(apart, blinking);
@@ -84,7 +88,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     filter.stop();
     location.fix = alone;
     location.observations = apart;
-  } else if (few && (alone.valid || contradicted)) {
+  } else if ((few || (fitting == 2 && elsewhere)) && (alone.valid || contradicted)) {
     m_refused = true;
     if (elsewhere) {
       m_apart = LastPose{alone, location.timestamp};
@@ -98,6 +102,22 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     location.observations = apart;
     location.fix = alone;
     addMotionDoubt(location, membersOf(location));
+  }
+}
+
+/*!
+  The robot may have been put where it stands now instead of having come there at a velocity that it did not
+  have before: then it is where this frame's lamps alone say. The filter goes on, and learns from the next
+  frame.
+*/
+void vpVlpLocalizer::doubtSuddenMotion(vpVlpLocation &location, std::vector<vpLampObservation> &observations,
+                                       const std::vector<size_t> &usable) const
+{
+  const vpVlpFix put = solve(observations, usable);
+  if (put.valid) {
+    const Eigen::Matrix<double, 6, 1> apart =
+        vpBasePose::of(location.fix.wMb).stepTo(vpBasePose::of(put.wMb));
+    location.fix.covariance += apart * apart.transpose();
   }
 }
 
@@ -152,6 +172,7 @@ vpVlpLocalizer::Motion vpVlpLocalizer::correctRestless(vpVlpLocation &location,
   }
   auto surprises = [&] { return scratch.before.unrest() == 1 && vpSurprise::of(location.fix); };
   if (halfOrLess() || surprises()) {
+    motion = Motion::sudden;
     scratch.before.forgetVelocity();
     again();
     attempt();

@@ -95,11 +95,13 @@ private:
   vpVlpFix solve(std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable) const;
   void solveAlone(vpVlpLocation &location, const std::vector<size_t> &usable);
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
+  void doubtSuddenMotion(vpVlpLocation &location, std::vector<vpLampObservation> &observations,
+                         const std::vector<size_t> &usable) const;
   bool vague(double time) const;
   bool beginAnew(vpVlpLocation &location, std::vector<vpLampObservation> observations,
                  const std::vector<size_t> &usable, bool proven);
   bool misplacedKnown(const vpVlpLocation &location, const std::vector<size_t> &which) const;
-  enum class Motion { asBefore, restless, inexplicable }; // that the lamps of a frame show
+  enum class Motion { asBefore, restless, sudden, inexplicable }; // that the lamps of a frame show
   Motion correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
   void correct(vpVlpLocation &location, const std::vector<size_t> &usable);
   bool bends(const vpVlpLocation &location) const;
