@@ -25,12 +25,11 @@ void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
 
 bool vpLampTracker::Track::isElsewhere(const vpLampObservation &lamp) const
 {
-  static const double far = 1, vague = 5; // of its diagonal; times the doubt of what is known
+  static const double far = 1, vague = 5; // of its size; times the doubt of what is known
   const vpImagePoint middle(lamp.outline.centre.y(), lamp.outline.centre.x());
   return vpLedIdEvidence::tells(lamp.features) && vpLedIdEvidence::tells(evidence.features()) &&
          lamp.features.frequencySigma > vague * evidence.features().frequencySigma &&
-         vpImagePoint::distance(middle, told.getCenter()) >
-             far * std::hypot(told.getWidth(), told.getHeight());
+         vpImagePoint::distance(middle, told.getCenter()) > far * std::max(told.getWidth(), told.getHeight());
 }
 
 //! A lamp that is recognised beyond doubt may be found by a glance in the next frame.
