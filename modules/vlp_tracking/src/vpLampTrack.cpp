@@ -25,11 +25,16 @@ void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
 
 bool vpLampTracker::Track::isElsewhere(const vpLampObservation &lamp) const
 {
-  static const double far = 1, vague = 5; // of its size; times the doubt of what is known
+  static const double far = 1, vague = 5, off = 3; // of its size; times the doubt of what is known; sigma
+  const vpStripeFeatures &now = lamp.features, &past = evidence.features();
+  if (!vpLedIdEvidence::tells(now) || !vpLedIdEvidence::tells(past) ||
+      now.frequencySigma <= vague * past.frequencySigma) {
+    return false;
+  }
   const vpImagePoint middle(lamp.outline.centre.y(), lamp.outline.centre.x());
-  return vpLedIdEvidence::tells(lamp.features) && vpLedIdEvidence::tells(evidence.features()) &&
-         lamp.features.frequencySigma > vague * evidence.features().frequencySigma &&
-         vpImagePoint::distance(middle, told.getCenter()) > far * std::max(told.getWidth(), told.getHeight());
+  return vpImagePoint::distance(middle, told.getCenter()) >
+             far * std::max(told.getWidth(), told.getHeight()) ||
+         std::abs(now.frequency - past.frequency) > off * now.frequencySigma;
 }
 
 //! A lamp that is recognised beyond doubt may be found by a glance in the next frame.

@@ -29,7 +29,8 @@ struct vpLampTracker::Track {
   vpLampObservation seen;          // by a glance,
   bool found = false;              // where it was expected
 
-  //! Whether a region far from where it blinked last tells too little of its own to be the same lamp.
+  //! Whether a region tells too little of its own to be the same lamp, far from where that blinked last or
+  //! hardly as that did.
   bool isElsewhere(const vpLampObservation &lamp) const;
   //! \param enough Frames that agree on it.
   void learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence);
