@@ -25,16 +25,18 @@ void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
 
 bool vpLampTracker::Track::isElsewhere(const vpLampObservation &lamp) const
 {
-  static const double far = 1, vague = 5, off = 3; // of its size; times the doubt of what is known; sigma
+  static const double far = 1, farthest = 1.4; // of its size; of one that is no plain wave
+  static const double vague = 5, off = 3;      // times the doubt of what is known; sigma
   const vpStripeFeatures &now = lamp.features, &past = evidence.features();
   if (!vpLedIdEvidence::tells(now) || !vpLedIdEvidence::tells(past) ||
       now.frequencySigma <= vague * past.frequencySigma) {
     return false;
   }
   const vpImagePoint middle(lamp.outline.centre.y(), lamp.outline.centre.x());
+  const bool pwm = now.signal == vpStripeFeatures::Signal::pwm && past.signal == now.signal;
   return vpImagePoint::distance(middle, told.getCenter()) >
-             far * std::max(told.getWidth(), told.getHeight()) ||
-         std::abs(now.frequency - past.frequency) > off * now.frequencySigma;
+             (pwm ? far : farthest) * std::max(told.getWidth(), told.getHeight()) ||
+         (pwm && std::abs(now.frequency - past.frequency) > off * now.frequencySigma);
 }
 
 //! A lamp that is recognised beyond doubt may be found by a glance in the next frame.
