@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
-#include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
 
 #include "common/vpCommandLine.h"
 #include "vpCalibrationOutput.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <visp3/vlp_detection/vpLedIdPlanner.h>
+#include <visp3/vlp_identification/vpLedIdPlanner.h>
 
 BEGIN_VISP_NAMESPACE
 

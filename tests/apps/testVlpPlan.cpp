@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_core/vpLampMap.h>
-#include <visp3/vlp_detection/vpLedIdPlanner.h>
+#include <visp3/vlp_identification/vpLedIdPlanner.h>
 
 #include "apps/vpExpectRefused.h"
 #include "common/vpProcess.h"

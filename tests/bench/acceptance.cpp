@@ -14,9 +14,9 @@
 #include <vector>
 
 #include <visp3/vlp_core/vpVlpRig.h>
-#include <visp3/vlp_detection/vpLedDetector.h>
-#include <visp3/vlp_detection/vpLedIdEvidence.h>
-#include <visp3/vlp_detection/vpLedIdPlanner.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedIdEvidence.h>
+#include <visp3/vlp_identification/vpLedIdPlanner.h>
 #include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
 
 #include "vpSimulatedStripes.h"

@@ -21,7 +21,7 @@
 #include <visp3/vlp_calibration/vpLampSurvey.h>
 #include <visp3/vlp_calibration/vpMountCalibration.h>
 #include <visp3/vlp_calibration/vpShutterCalibration.h>
-#include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
 #include <visp3/vlp_simulation/vpSimulation.h>
 
 #include "vlp_calibration/boardPictures.h"

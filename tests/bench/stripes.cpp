@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
-#include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
 #include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
 
 #include "vpSimulatedStripes.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <visp3/vlp_core/vpLampMap.h>
-#include <visp3/vlp_detection/vpStripeAnalyzer.h>
+#include <visp3/vlp_identification/vpStripeAnalyzer.h>
 #include <visp3/vlp_simulation/vpLampLight.h>
 
 #ifdef ENABLE_VISP_NAMESPACE

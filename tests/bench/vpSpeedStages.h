@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
 #include <visp3/vlp_localization/vpManyLampSolver.h>
 
 #ifdef ENABLE_VISP_NAMESPACE

@@ -11,8 +11,8 @@
 #include <mutex>
 
 #include <visp3/vlp_core/vpVlpRig.h>
-#include <visp3/vlp_detection/vpLedIdPlanner.h>
-#include <visp3/vlp_detection/vpLedIdRecognizer.h>
+#include <visp3/vlp_identification/vpLedIdPlanner.h>
+#include <visp3/vlp_identification/vpLedIdRecognizer.h>
 
 #include "vpSimulatedStripes.h"
 

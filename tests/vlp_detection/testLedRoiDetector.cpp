@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "paintedLamps.h"
+#include "common/paintedLamps.h"
 
 using namespace paintedLamps;
 

@@ -11,7 +11,7 @@
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_calibration/vpMountCalibration.h>
 #include <visp3/vlp_calibration/vpShutterCalibration.h>
-#include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
 #include <visp3/vlp_simulation/vpSimulation.h>
 
 #ifdef ENABLE_VISP_NAMESPACE

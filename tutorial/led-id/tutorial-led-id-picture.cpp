@@ -10,7 +10,7 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/gui/vpDisplayX.h>
-#include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
 #include <visp3/vlp_sensor/vpReadGreyPicture.h>
 
 #ifdef ENABLE_VISP_NAMESPACE

@@ -10,8 +10,8 @@
 #include <iostream>
 
 #include <visp3/core/vpException.h>
-#include <visp3/vlp_detection/vpLedIdPlanner.h>
 #include <visp3/vlp_evaluation/vpCapacityFigure.h>
+#include <visp3/vlp_identification/vpLedIdPlanner.h>
 #include <visp3/vlp_localization/vpIdentifierLayout.h>
 
 #ifdef ENABLE_VISP_NAMESPACE

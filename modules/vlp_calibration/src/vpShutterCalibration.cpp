@@ -13,7 +13,7 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
-#include <visp3/vlp_detection/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
 
 BEGIN_VISP_NAMESPACE
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -136,6 +137,34 @@ Eigen::Vector4d vpLampOutline::box() const
     most = most.cwiseMax(corner);
   }
   return {least.x(), least.y(), most.x(), most.y()};
+}
+
+bool vpLampOutline::stretch(double v, double &first, double &last) const
+{
+  if (shape == Shape::ellipse) {
+    // |D R^T (x - centre)| = 1 with x = (u, v): a quadratic in u - centre.
+    const double c = std::cos(angle), s = std::sin(angle), below = v - centre.y();
+    const Eigen::Vector2d p(c / a, -s / b), q(below * s / a, below * c / b);
+    const double square = p.squaredNorm(), product = p.dot(q),
+                 discriminant = product * product - square * (q.squaredNorm() - 1);
+    if (!(discriminant > 0)) {
+      return false;
+    }
+    first = centre.x() + (-product - std::sqrt(discriminant)) / square;
+    last = centre.x() + (-product + std::sqrt(discriminant)) / square;
+    return true;
+  }
+  first = std::numeric_limits<double>::infinity();
+  last = -first;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d &from = corners[i], &to = corners[(i + 1) % corners.size()];
+    if ((from.y() - v) * (to.y() - v) <= 0 && from.y() != to.y()) {
+      const double u = from.x() + (to.x() - from.x()) * (v - from.y()) / (to.y() - from.y());
+      first = std::min(first, u);
+      last = std::max(last, u);
+    }
+  }
+  return first <= last;
 }
 
 Eigen::Vector2d vpLampOutline::middle(const vpCameraParameters &camera, const Eigen::Vector3d &cNormal) const

@@ -10,7 +10,7 @@
 
 #include <visp3/core/vpImage.h>
 #include <visp3/core/vpRect.h>
-#include <visp3/vlp_detection/vpLedIdEvidence.h>
+#include <visp3/vlp_identification/vpLedIdEvidence.h>
 
 BEGIN_VISP_NAMESPACE
 

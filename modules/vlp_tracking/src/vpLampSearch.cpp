@@ -117,8 +117,9 @@ void vpLampTracker::search(const vpVlpFrame &frame)
     const bool strip = w + 1 == m_searched.size(), target = w < m_tracks.size();
     const bool found = target ? m_tracks[w].taken : !strip && shown(m_searched[w]);
     // Where a lamp is expected, what told nothing of one may be a part of it.
-    if (!found && (target || known.empty() ||
-                   detector.showsMore(frame.I, m_searched[w], strip ? knownOrSteady : known, noise))) {
+    if (!found &&
+        (target || known.empty() ||
+         vpLedRoiDetector::showsMore(frame.I, m_searched[w], strip ? knownOrSteady : known, noise))) {
       open.push_back(m_searched[w]);
     }
   }

@@ -41,6 +41,8 @@ struct VISP_EXPORT vpLampOutline {
   double diameter() const;
   //! Bounding box: left, top, right, bottom, pixels.
   Eigen::Vector4d box() const;
+  //! The part of the line v = \e v that lies inside, from \e first to \e last, px. False: none.
+  bool stretch(double v, double &first, double &last) const;
 
   /*!
     Projection of the lamp's middle, in pixels. For an ellipse its own middle is not that point: the lamp's

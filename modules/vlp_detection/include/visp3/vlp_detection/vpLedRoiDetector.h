@@ -9,6 +9,7 @@
 
 #include <opencv2/core.hpp>
 #include <visp3/core/vpImage.h>
+#include <visp3/core/vpRect.h>
 #include <visp3/vlp_core/vpVlpNamespace.h>
 
 BEGIN_VISP_NAMESPACE
@@ -80,6 +81,14 @@ public:
     one, a larger one is looked at.
   */
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window) const;
+
+  /*!
+    Whether a window shows any light but that of known lamps: three samples in a row that are brighter than
+    the window's median by 8 grey levels and by six standard deviations of the noise. \param known Boxes that
+    are left out, px. \param noise Grey levels.
+  */
+  static bool showsMore(const vpImage<unsigned char> &I, const vpRect &window,
+                        const std::vector<vpRect> &known, double noise);
 
 private:
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const vpBackground &dark) const;

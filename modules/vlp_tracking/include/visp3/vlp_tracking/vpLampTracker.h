@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <visp3/vlp_core/vpVlpFrame.h>
-#include <visp3/vlp_detection/vpLedDetector.h>
-#include <visp3/vlp_detection/vpLedIdEvidence.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedIdEvidence.h>
 #include <visp3/vlp_tracking/vpTargetTracker.h>
 
 BEGIN_VISP_NAMESPACE

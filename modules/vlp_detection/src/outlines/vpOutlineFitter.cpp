@@ -1,0 +1,333 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_detection/vpOutlineFitter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "regions/vpChordShape.h"
+#include "vpEdgeFit.h"
+#include <visp3/vlp_core/vpBrighter.h>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+
+//! Enough of the points to start from.
+std::vector<cv::Point2f> thinned(std::vector<cv::Point2f> points)
+{
+  static const size_t enough = 100;
+  const size_t step = points.size() / enough;
+  if (step < 2) {
+    return points;
+  }
+  // First and last ends come by turns: pairs are kept.
+  std::vector<cv::Point2f> few;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (i / 2 % step == 0) {
+      few.push_back(points[i]);
+    }
+  }
+  return few;
+}
+
+/*!
+  The likelier of the two shapes, data and prior together. What thin stripes do not tell apart adds to the
+  covariance: the distance of the two middles, by the other shape's probability.
+*/
+vpOutlineFit likelier(const vpEdgeFit<vpEllipseModel> &ellipse, const vpEdgeFit<vpQuadrilateralModel> &sides)
+{
+  static const double comparable = 0.5; // share of the ellipse's pixels; on fewer, corners may be anything
+  if (sides.pixels() < comparable * ellipse.pixels()) {
+    return ellipse.result();
+  }
+  const double pixels = std::min(ellipse.pixels(), sides.pixels());
+  static const double least = 0.05; // grey levels^2
+  const double ratio = std::max(ellipse.misfit(), least) / std::max(sides.misfit(), least);
+  // A quadrilateral has more parameters to fit noise with (Schwarz's criterion), whose variance is not known
+  // either.
+  const double penalty = (vpQuadrilateralModel::parameters - vpEllipseModel::parameters) * std::log(pixels);
+  const double gain = pixels * std::log(ratio) + ellipse.prior() - sides.prior() - penalty;
+  vpOutlineFit best = gain > 0 ? sides.result() : ellipse.result();
+  const vpOutlineFit other = gain > 0 ? ellipse.result() : sides.result();
+  const double doubt = 1 / (1 + std::exp(0.5 * std::abs(gain)));
+  const Eigen::Vector2d apart = other.outline.centre - best.outline.centre;
+  best.outline.otherShape = doubt;
+  best.outline.centreCovariance += doubt * (other.outline.centreCovariance + apart * apart.transpose());
+  return best;
+}
+
+/*!
+  Thin stripes far apart show little of an outline: where they make an ellipse longer than lamps are seen, it
+  may be another shape altogether, and the middle lies anywhere along it.
+*/
+void addElongationDoubt(vpLampOutline &ellipse, const vpLedRoi &roi, double prior)
+{
+  static const double rare = 6; // chi-square of the shape's prior
+  if (prior > rare && roi.chords.size() < ellipse.b) {
+    const Eigen::Vector2d along(std::cos(ellipse.angle), std::sin(ellipse.angle));
+    const double doubt = 0.5 * (ellipse.a - ellipse.b);
+    ellipse.centreCovariance += doubt * doubt * along * along.transpose();
+  }
+}
+
+//! Whether the region's lit lines all cross the outline: one that leaves some out was fitted to a part of the
+//! lamp.
+bool holds(const vpOutlineFit &fit, const vpLedRoi &roi)
+{
+  static const double most = 0.9; // share of the lines
+  const double margin = 1 + 3 * fit.blur;
+  const Eigen::Vector4d box = fit.outline.box();
+  const auto inside = std::count_if(roi.chords.begin(), roi.chords.end(), [&](const vpLedChord &chord) {
+    return chord.line > box(1) - margin && chord.line < box(3) + margin;
+  });
+  return static_cast<double>(inside) >= most * static_cast<double>(roi.chords.size());
+}
+
+const double softMisfit = 0.15; // share of the radius, root mean square of chord ends about their ellipse
+const double evenEdge = 0.45;   // evenness below which a lamp glows about a bright core
+
+/*!
+  A lamp that glows about a bright core: its glow, or a housing that it lights, may lie anywhere about it. Its
+  middle is that of its light. Across the lines stripes weigh on it a little.
+*/
+void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weight = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    for (int x = chord.first; x <= chord.last; ++x) {
+      const double light = std::max(0.0, lines(chord.line, x) - roi.level);
+      sum += light * Eigen::Vector2d(x, chord.line);
+      weight += light;
+    }
+  }
+  if (weight > 0) {
+    outline.centre = sum / weight;
+  }
+  static const Eigen::Vector2d doubt(0.04, 0.06); // share of the radius, standard deviation
+  outline.centreCovariance = (0.5 * outline.diameter() * doubt).cwiseAbs2().asDiagonal();
+}
+
+//! How much brighter the brightest of a chord is than its region's level, grey levels.
+double lightOf(const vpLedChord &chord, const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  const int samples = chord.last - chord.first + 1;
+  return vpBrighter::brightest(lines[chord.line] + chord.first, samples) - roi.level;
+}
+
+double brightestOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  double brightest = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    brightest = std::max(brightest, lightOf(chord, lines, roi));
+  }
+  return brightest;
+}
+
+//! What of each lit line is brighter than half its light.
+vpLedRoi brightPart(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  static const double half = 0.5, lit = 0.5; // of a line's light; of the brightest line's
+  const double brightest = brightestOf(lines, roi);
+  vpLedRoi part = roi;
+  part.chords.clear();
+  part.box = cv::Rect();
+  for (vpLedChord chord : roi.chords) {
+    const double light = lightOf(chord, lines, roi), least = roi.level + half * light;
+    if (light < lit * brightest) {
+      continue;
+    }
+    while (lines(chord.line, chord.first) < least) {
+      ++chord.first;
+    }
+    while (lines(chord.line, chord.last) < least) {
+      --chord.last;
+    }
+    part.chords.push_back(chord);
+    part.box |= cv::Rect(chord.first, chord.line, chord.last - chord.first + 1, 1);
+  }
+  return part;
+}
+
+//! Whether no rectangle is as near to the ends of a region's chords as an ellipse is.
+bool isRound(const std::vector<cv::Point2f> &ends, const vpLedRoi &roi)
+{
+  static const double worse = 3;
+  return vpChordShape::rectangleMisfit(ends) > worse * vpChordShape::ellipseMisfit(ends, roi.box);
+}
+
+/*!
+  The lamp alone, where its region holds dimmer light beside it as well, its ghost in a pane or a rim that it
+  lights, whose edges an ellipse about both takes for the lamp's. \param evenness Of that ellipse; 0: none.
+*/
+std::optional<vpOutlineFit> withoutCompanion(const vpEdgeFitPicture &picture, const vpLedRoi &roi,
+                                             double shapeSigma, int maxIterations, double evenness)
+{
+  static const double more = 0.2, nearlyAlone = 0.7; // evenness
+  static const double nearlyAll = 0.93;              // of the ends
+  static const size_t enough = 16;                   // of them
+  const vpLedRoi part = brightPart(picture.lines, roi);
+  const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(part, picture.lines.cols));
+  if (ends.size() < enough || !isRound(ends, part)) {
+    return std::nullopt;
+  }
+  vpEdgeFit<vpEllipseModel>::Memory memory;
+  vpEdgeFit<vpEllipseModel> fit(picture, vpEllipseModel::from(ends, part.box), memory);
+  if (!fit.run(part.box, shapeSigma, {maxIterations}) || !holds(fit.result(), part) ||
+      fit.kept() < nearlyAll || fit.evenness() < std::max(nearlyAlone, evenness + more)) {
+    return std::nullopt;
+  }
+  vpOutlineFit lamp = fit.result();
+  static const double sharp = 0.1; // share of the radius: a bright core in a glow has no edge of its own
+  if (lamp.blur > std::max(1.0, sharp * 0.5 * lamp.outline.diameter())) {
+    return std::nullopt;
+  }
+  static const double pulled = 0.04; // px, by what light there is beside the edge
+  lamp.outline.centreCovariance += pulled * pulled * Eigen::Matrix2d::Identity();
+  return lamp;
+}
+
+//! Where edges are uneven and leave much of the light about them unexplained, some are not the lamp's.
+void addCompanionDoubt(vpLampOutline &ellipse, double misfit, double light)
+{
+  static const double usual = 0.03; // share of the light
+  const double unexplained = std::sqrt(misfit) / std::max(light, 1.0);
+  if (unexplained > usual) {
+    const double doubt = 0.5 * ellipse.diameter() * unexplained;
+    ellipse.centreCovariance += doubt * doubt * Eigen::Matrix2d::Identity();
+  }
+}
+
+/*!
+  Whether the picture shows enough of each side of a quadrilateral. Where one that is not shown lies, nothing
+  but the shapes that lamps have would say.
+*/
+bool showsSides(const vpLampOutline &quadrilateral, const cv::Size &picture)
+{
+  static const double enough = 0.1; // of a side
+  static const int points = 40;     // along it
+  for (size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d &from = quadrilateral.corners[i], &to = quadrilateral.corners[(i + 1) % 4];
+    int shown = 0;
+    for (int k = 0; k < points; ++k) {
+      const Eigen::Vector2d point = from + (k + 0.5) / points * (to - from);
+      shown +=
+          point.x() > 0 && point.y() > 0 && point.x() < picture.width - 1 && point.y() < picture.height - 1;
+    }
+    if (shown < enough * points) {
+      return false;
+    }
+  }
+  return true;
+}
+
+//! Whether each sample lies where its number says.
+bool isAligned(const std::vector<double> &positions)
+{
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (positions[i] != static_cast<double>(i)) {
+      return false;
+    }
+  }
+  return true;
+}
+} // namespace
+
+vpOutlineFit vpOutlineFitter::boxOf(const vpLedRoi &roi)
+{
+  vpOutlineFit fit;
+  vpLampOutline &outline = fit.outline;
+  const double left = roi.box.x - 0.5, top = roi.box.y - 0.5;
+  const double right = left + roi.box.width, bottom = top + roi.box.height;
+  outline.corners = {Eigen::Vector2d(left, top), Eigen::Vector2d(right, top), Eigen::Vector2d(right, bottom),
+                     Eigen::Vector2d(left, bottom)};
+  outline.centre = Eigen::Vector2d(0.5 * (left + right), 0.5 * (top + bottom));
+  outline.a = 0.5 * std::max(roi.box.width, roi.box.height);
+  outline.b = 0.5 * std::min(roi.box.width, roi.box.height);
+  outline.centreCovariance =
+      Eigen::Vector2d(roi.box.width * roi.box.width, roi.box.height * roi.box.height).asDiagonal();
+  outline.centreCovariance /= 12;
+  return fit;
+}
+
+vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
+                                  const std::vector<double> &linePositions,
+                                  const std::vector<double> &samplePositions, const vpLedRoi &roi,
+                                  double likelyBlur) const
+{
+  vpOutlineFit best = boxOf(roi);
+  const bool fromBorderToBorder = roi.box.width >= lines.cols - 2 || roi.box.height >= lines.rows - 2;
+  if (fromBorderToBorder) {
+    return best;
+  }
+  const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(roi, lines.cols));
+  if (ends.size() < 6) {
+    return best;
+  }
+  const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
+  const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
+  vpEdgeFit<vpEllipseModel>::Memory memory;
+  const vpEdgeFitPicture picture{lines, linePositions, samplePositions, isAligned(samplePositions)};
+  vpEdgeFit<vpEllipseModel> ellipse(picture, start, memory);
+  // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
+  static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
+  const bool whole = roi.lampness > nearlyPerfect * vpChordShape::mostLampness(2 * roi.box.height);
+  bool isEllipse = whole && ellipse.run(roi.box, shapeSigma, {maxIterations, 2, 0.005, true}, likelyBlur) &&
+                   ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
+  if (!isEllipse) {
+    ellipse = vpEdgeFit<vpEllipseModel>(picture, start, memory);
+    isEllipse = ellipse.run(roi.box, shapeSigma, {maxIterations}) && holds(ellipse.result(), roi);
+  }
+  static const double alone = 0.8; // evenness of a lamp without other light beside it
+  const double evenness = isEllipse ? ellipse.evenness() : 0;
+  if (evenness < alone) {
+    if (const auto lamp = withoutCompanion(picture, roi, shapeSigma, maxIterations, evenness)) {
+      return *lamp;
+    }
+  }
+  if (isEllipse) {
+    best = ellipse.result();
+    addElongationDoubt(best.outline, roi, ellipse.prior());
+  }
+  bool even = evenness > evenEdge;
+  static const double round = 0.015; // share of the radius: no rectangle is that near to an ellipse
+  const bool maySquare = !even || ellipseMisfit > round * start.radius();
+  const double sidesMisfit =
+      maySquare ? vpChordShape::rectangleMisfit(ends) : std::numeric_limits<double>::infinity();
+  if (sidesMisfit <= 3 * ellipseMisfit) {
+    vpEdgeFit<vpQuadrilateralModel>::Memory ofSides;
+    vpEdgeFit<vpQuadrilateralModel> sides(picture, vpQuadrilateralModel::from(ends), ofSides);
+    if (sides.run(roi.box, shapeSigma, {maxIterations}) && sides.evenness() > evenEdge &&
+        holds(sides.result(), roi)) {
+      if (even) {
+        best = likelier(ellipse, sides);
+      } else {
+        best = sides.result();
+        best.outline.otherShape = 0; // no ellipse fits at all
+      }
+      even = true;
+    }
+  }
+  const bool cut = roi.cutAcross || roi.cutAlong;
+  const bool sided = best.outline.shape == vpLampOutline::Shape::quadrilateral;
+  if (cut && (!even || (sided && !showsSides(best.outline, lines.size())))) {
+    best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
+  } else if (!even && (isEllipse || ellipseMisfit < std::min(softMisfit * start.radius(), 2 * sidesMisfit))) {
+    if (!isEllipse) {
+      best.outline = start.outline(Eigen::MatrixXd::Zero(2, 2));
+      best.blur = softMisfit * start.radius();
+    }
+    centreOnLight(best.outline, lines, roi);
+  } else if (even && evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
+    addCompanionDoubt(best.outline, ellipse.misfit(), brightestOf(lines, roi));
+  }
+  return best;
+}
+
+END_VISP_NAMESPACE

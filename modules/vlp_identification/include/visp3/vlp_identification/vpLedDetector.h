@@ -1,0 +1,94 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLedDetector_h
+#define vpLedDetector_h
+
+#include <vector>
+
+#include <visp3/detection/vpDetectorBase.h>
+#include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_core/vpLampObservation.h>
+#include <visp3/vlp_core/vpVlpRig.h>
+#include <visp3/vlp_detection/vpLedRoiDetector.h>
+#include <visp3/vlp_detection/vpOutlineFitter.h>
+#include <visp3/vlp_identification/vpLedIdRecognizer.h>
+#include <visp3/vlp_identification/vpStripeAnalyzer.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  LED-ID detection and recognition over a whole picture, the paper's section 2.1.1 and 2.1.2: LED-ROI,
+  outline, stripe features, id. As every vpDetectorBase it gives each region's corners (of its bounding box,
+  or the four of a quadrilateral) and its message (the lamp's id, empty where it is none of the map's).
+  getCog() is the mean of the corners; the projection of the lamp's middle is the observation's `point`.
+
+  \code
+  vpLedDetector detector(rig, map);
+  if (detector.detect(I)) {
+    for (const vpLampObservation &lamp : detector.observations()) {
+      ...
+    }
+  }
+  \endcode
+*/
+class VISP_EXPORT vpLedDetector : public vpDetectorBase
+{
+public:
+  vpLedRoiDetector roiDetector;
+  vpOutlineFitter outlineFitter;
+  vpStripeAnalyzer stripeAnalyzer;
+  vpLedIdRecognizer recognizer;
+  bool skipSteady =
+      false; // regions whose lines show no stripes at a first look have no outline but their box
+
+  //! \throw vpException where the rig has no picture size.
+  vpLedDetector(const vpVlpRig &rig, const vpLampMap &map);
+
+  /*!
+    \return True where there is any lamp-like region. Times of the observations count from the start of the
+    frame. \throw vpException (dimensionError) where \e I has not the size that the rig states.
+  */
+  bool detect(const vpImage<unsigned char> &I) override;
+
+  /*!
+    The same inside windows only, pixels; those that overlap are looked at as one. A lamp that a window cuts
+    is seen whole all the same, and so may be a neighbour. \throw vpException (badValue) where a window's
+    corners are not finite.
+  */
+  bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows);
+
+  /*!
+    Looks again at a lamp that was seen in the frame before, in a fraction of the time: fits its outline from
+    where it is expected and compares its stripes with what is known of them. \param lamp As it was, `outline`
+    where it is expected now, `features` all that is known of it; as it is, if it is found. \return False
+    where it is not there, or in any respect not as before, or was not seen well enough: detect() tells more.
+  */
+  bool glance(const vpImage<unsigned char> &I, vpLampObservation &lamp);
+
+  //! \throw vpException (dimensionError) where \e I has not the size that the rig states.
+  void check(const vpImage<unsigned char> &I) const;
+
+  //! Every lamp-like region of the last picture, the one with the largest lit area first.
+  const std::vector<vpLampObservation> &observations() const { return m_observations; }
+
+  //! What the lamps of the last picture say of the rig's row time.
+  const vpRowTimeError &rowTimeError() const { return m_rowTimeError; }
+
+private:
+  bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
+  bool joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
+  vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi);
+  void place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const;
+
+  vpVlpRig m_rig;
+  vpLineTiming m_timing;
+  std::vector<vpLampObservation> m_observations;
+  vpRowTimeError m_rowTimeError;
+  double m_blur = 0; // px, of the latest outline: mostly that of the lens
+};
+
+END_VISP_NAMESPACE
+
+#endif

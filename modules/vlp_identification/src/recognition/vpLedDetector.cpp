@@ -1,0 +1,394 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_identification/vpLedDetector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include <visp3/core/vpException.h>
+#include <visp3/core/vpRect.h>
+
+#include "stripes/vpLampGlance.h"
+#include "stripes/vpSteadyLight.h"
+#include <visp3/vlp_core/vpBrighter.h>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+
+//! Takes an outline from samples and lines of a transposed picture back to u and v.
+vpLampOutline swapped(vpLampOutline outline)
+{
+  std::swap(outline.centre.x(), outline.centre.y());
+  outline.angle = std::remainder(M_PI / 2 - outline.angle, M_PI);
+  for (Eigen::Vector2d &corner : outline.corners) {
+    std::swap(corner.x(), corner.y());
+  }
+  std::swap(outline.centreCovariance(0, 0), outline.centreCovariance(1, 1));
+  return outline;
+}
+
+//! A pixel at most one outside of a picture, which may be far from where the window ends.
+int near(double x, int pixels)
+{
+  return static_cast<int>(std::clamp(x, -1.0, static_cast<double>(pixels)));
+}
+
+//! Windows as lines and samples of the picture, clipped to it.
+std::vector<cv::Rect> linesOf(const std::vector<vpRect> &windows, const vpLinePicture &picture)
+{
+  std::vector<cv::Rect> rects;
+  for (const vpRect &window : windows) {
+    if (!std::isfinite(window.getRight()) || !std::isfinite(window.getBottom())) {
+      std::ostringstream message;
+      message << "windows: one from (" << window.getLeft() << ", " << window.getTop() << ") to ("
+              << window.getRight() << ", " << window.getBottom() << "), expected finite numbers";
+      throw vpException(vpException::badValue, message.str());
+    }
+    const int columns = picture.transposed ? picture.grey.rows : picture.grey.cols,
+              rows = picture.transposed ? picture.grey.cols : picture.grey.rows;
+    const int left = near(std::floor(window.getLeft()), columns),
+              top = near(std::floor(window.getTop()), rows),
+              right = near(std::ceil(window.getRight()), columns),
+              bottom = near(std::ceil(window.getBottom()), rows);
+    cv::Rect rect(left, top, right - left + 1, bottom - top + 1);
+    if (picture.transposed) {
+      std::swap(rect.x, rect.y);
+      std::swap(rect.width, rect.height);
+    }
+    rect &= cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
+    if (rect.area() > 0) {
+      rects.push_back(rect);
+    }
+  }
+  return rects;
+}
+
+//! Rectangles that overlap, as one.
+std::vector<cv::Rect> joined(std::vector<cv::Rect> rects)
+{
+  for (size_t i = 0; i < rects.size(); ++i) {
+    for (size_t k = i + 1; k < rects.size(); ++k) {
+      if ((rects[i] & rects[k]).area() > 0) {
+        rects[i] |= rects[k];
+        rects.erase(rects.begin() + static_cast<long>(k));
+        k = i; // the larger one may overlap others
+      }
+    }
+  }
+  return rects;
+}
+
+//! Both regions as one: on each line from the first to the last lit sample.
+vpLedRoi joined(const vpLedRoi &a, const vpLedRoi &b)
+{
+  std::map<int, vpLedChord> chords;
+  for (const vpLedRoi *roi : {&a, &b}) {
+    for (const vpLedChord &chord : roi->chords) {
+      vpLedChord &whole = chords.emplace(chord.line, chord).first->second;
+      whole.first = std::min(whole.first, chord.first);
+      whole.last = std::max(whole.last, chord.last);
+    }
+  }
+  vpLedRoi roi = a;
+  roi.chords.clear();
+  for (const auto &[line, chord] : chords) {
+    roi.chords.push_back(chord);
+  }
+  roi.box |= b.box;
+  roi.level = std::min(a.level, b.level);
+  roi.lampness = std::max(a.lampness, b.lampness);
+  roi.cutAcross = a.cutAcross || b.cutAcross;
+  roi.cutAlong = a.cutAlong || b.cutAlong;
+  return roi;
+}
+
+//! Lit pixels of a region, and the share of them at the end of the grey scale.
+void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObservation &lamp)
+{
+  static const unsigned char nearlyWhite = 254; // of JPEG's white, too
+  const auto level = static_cast<unsigned char>(std::clamp(std::floor(roi.level), 0.0, 255.0));
+  int pixels = 0, white = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    const unsigned char *row = picture.grey[chord.line] + chord.first;
+    const int samples = chord.last - chord.first + 1;
+    pixels += vpBrighter::count(row, samples, level);
+    white += vpBrighter::count(row, samples, nearlyWhite - 1);
+  }
+  lamp.features.area = pixels;
+  lamp.saturated = pixels > 0 ? static_cast<double>(white) / pixels : 0;
+}
+
+/*!
+  Stripes that the grey scale cuts off seem longer, and their edges lie where it ends: what is known of them
+  is less certain than their noise says, and no frame to come makes it better.
+*/
+void doubtClipped(vpLampObservation &lamp)
+{
+  static const double harmless = 0.3, steep = 6; // share of the lit pixels; times, for each share beyond
+  const double times = 1 + steep * std::max(0.0, lamp.saturated - harmless);
+  vpStripeFeatures &features = lamp.features;
+  if (std::isnan(features.frequencyNoise)) {
+    features.frequencyNoise = features.frequencySigma;
+  }
+  features.dutySigma = std::hypot(features.dutySigma, lamp.clippedDuty());
+  features.frequencySigma *= times;
+  features.frequencyBound *= times;
+  for (vpDutySlice &slice : features.alongDuty) {
+    slice.frequencySigma *= times;
+  }
+}
+
+//! Whether two regions blink as one lamp of the map.
+bool alike(const vpLampObservation &a, const vpLampObservation &b)
+{
+  return !a.candidates.empty() && !b.candidates.empty() &&
+         a.candidates.front().identifier == b.candidates.front().identifier;
+}
+
+cv::Rect2d boxOf(const vpLampOutline &outline)
+{
+  const Eigen::Vector4d box = outline.box();
+  return {box(0), box(1), box(2) - box(0), box(3) - box(1)};
+}
+
+/*!
+  Whether a region shows what another one shows better: it led to the same outline, or blinks alike and has
+  its middle in the other.
+*/
+bool isPartOf(const vpLampObservation &part, const vpLampObservation &whole)
+{
+  const vpLampOutline &a = part.outline, &b = whole.outline;
+  if (a.shape == vpLampOutline::Shape::region || b.shape == vpLampOutline::Shape::region ||
+      a.centreCovariance.trace() < b.centreCovariance.trace()) {
+    return false;
+  }
+  static const double most = 0.7; // of both together that they have in common
+  const cv::Rect2d box = boxOf(a), other = boxOf(b);
+  return (a.shape == b.shape && (box & other).area() > most * (box | other).area()) ||
+         (alike(part, whole) && other.contains({a.centre.x(), a.centre.y()}));
+}
+
+//! How the map's words are sent, each way once.
+std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter &shutter)
+{
+  const double rowTime = shutter.rowTime > 0 ? shutter.rowTimeSigma / shutter.rowTime : 0;
+  std::vector<vpWordFormat> formats;
+  for (const vpLamp &lamp : map.lamps) {
+    const vpModulation &sent = lamp.modulation;
+    if (sent.kind != vpModulation::Kind::word) {
+      continue;
+    }
+    const size_t chips = sent.chips().size();
+    const auto same =
+        std::find_if(formats.begin(), formats.end(), [&sent, chips](const vpWordFormat &format) {
+          return format.chips == chips && format.chipRate == sent.chipRate;
+        });
+    const double tolerance = std::hypot(rowTime, 1e-6 * lamp.oscillatorPpm);
+    if (same == formats.end()) {
+      formats.push_back({chips, sent.chipRate, tolerance});
+    } else {
+      same->tolerance = std::max(same->tolerance, tolerance);
+    }
+  }
+  return formats;
+}
+
+std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
+{
+  std::vector<vpImagePoint> corners;
+  if (outline.shape == vpLampOutline::Shape::quadrilateral) {
+    for (const Eigen::Vector2d &corner : outline.corners) {
+      corners.emplace_back(corner.y(), corner.x());
+    }
+  } else {
+    const Eigen::Vector4d box = outline.box();
+    corners = {{box(1), box(0)}, {box(1), box(2)}, {box(3), box(2)}, {box(3), box(0)}};
+  }
+  return corners;
+}
+
+} // namespace
+
+vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
+    : recognizer(map, rig.shutter), m_rig(rig)
+{
+  if (rig.width == 0 || rig.height == 0) {
+    throw vpException(vpException::badValue,
+                      "rig: picture size is 0, expected the camera's width and height");
+  }
+  m_timing = rig.lineTiming();
+  stripeAnalyzer.searchTwoPulses = std::any_of(map.lamps.begin(), map.lamps.end(), [](const vpLamp &lamp) {
+    return lamp.modulation.kind == vpModulation::Kind::twoPulse;
+  });
+  stripeAnalyzer.words = formatsOf(map, rig.shutter);
+}
+
+void vpLedDetector::check(const vpImage<unsigned char> &I) const
+{
+  if (I.getWidth() != m_rig.width || I.getHeight() != m_rig.height) {
+    std::ostringstream message;
+    message << "picture is " << I.getWidth() << " x " << I.getHeight() << " pixels, expected " << m_rig.width
+            << " x " << m_rig.height << " as the rig's camera says";
+    throw vpException(vpException::dimensionError, message.str());
+  }
+}
+
+bool vpLedDetector::detect(const vpImage<unsigned char> &I)
+{
+  check(I);
+  m_blur = 0; // a whole picture is seen as if it were alone
+  const vpLinePicture picture(I, m_rig.shutter.alongColumns());
+  return observe(picture, roiDetector.detect(picture.grey));
+}
+
+bool vpLedDetector::detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows)
+{
+  check(I);
+  const vpLinePicture picture(I, m_rig.shutter.alongColumns());
+  std::vector<vpLedRoi> rois;
+  for (const cv::Rect &window : joined(linesOf(windows, picture))) {
+    for (vpLedRoi &roi : roiDetector.detect(picture.grey, window)) {
+      // Windows that grow may see one lamp twice.
+      const bool twice = std::any_of(rois.begin(), rois.end(), [&roi](const vpLedRoi &other) {
+        return 2 * (roi.box & other.box).area() > std::min(roi.box.area(), other.box.area());
+      });
+      if (!twice) {
+        rois.push_back(std::move(roi));
+      }
+    }
+  }
+  return observe(picture, std::move(rois));
+}
+
+bool vpLedDetector::glance(const vpImage<unsigned char> &I, vpLampObservation &lamp)
+{
+  check(I);
+  if (!vpLampGlance::suits(lamp) || m_rig.shutter.alongColumns()) {
+    return false;
+  }
+  const vpLinePicture picture(I, false);
+  static thread_local vpLampGlance found; // for its memory
+  if (!found.find(picture, m_timing, lamp, outlineFitter.shapeSigma)) {
+    return false;
+  }
+  place(lamp, found.fit(), false);
+  lamp.features.area = found.area();
+  m_blur = found.fit().blur;
+  return true;
+}
+
+//! Where the lamp is, by its outline.
+void vpLedDetector::place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const
+{
+  lamp.outline = transposed ? swapped(fit.outline) : fit.outline;
+  lamp.point = lamp.outline.middle(m_rig.camera, m_rig.verticalInCamera());
+  lamp.covariance = lamp.outline.centreCovariance;
+  lamp.time = m_timing.middleAt(transposed ? lamp.point.x() : lamp.point.y());
+  lamp.blur = fit.blur;
+  lamp.noise = fit.noise;
+}
+
+//! All that follows from the regions.
+bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois)
+{
+  m_observations.clear();
+  for (const vpLedRoi &roi : rois) {
+    m_observations.push_back(observe(picture, roi));
+  }
+  m_rowTimeError = recognizer.recognize(m_observations);
+  if (joinPieces(picture, rois)) {
+    m_rowTimeError = recognizer.recognize(m_observations);
+  }
+  for (vpLampObservation &lamp : m_observations) {
+    if (lamp.outline.shape == vpLampOutline::Shape::region && !lamp.candidates.empty()) {
+      lamp.id.clear();
+      lamp.candidates.clear();
+      lamp.confidence = 1; // as that of all without a candidate
+      lamp.remark = "blinks as a lamp of the map, but has no outline of one";
+    }
+  }
+  std::stable_sort(m_observations.begin(), m_observations.end(),
+                   [](const vpLampObservation &a, const vpLampObservation &b) {
+                     return a.features.area > b.features.area;
+                   });
+
+  m_polygon.clear();
+  m_message.clear();
+  for (const vpLampObservation &lamp : m_observations) {
+    m_polygon.push_back(cornersOf(lamp.outline));
+    m_message.push_back(lamp.id);
+  }
+  m_nb_objects = m_observations.size();
+  return m_nb_objects > 0;
+}
+
+/*!
+  Regions that touch and blink as one lamp are pieces of it: a glow has no outline that would say so. Of a
+  lamp that was found in both, that which is known better stays.
+*/
+bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois)
+{
+  bool any = false;
+  for (size_t i = 0; i < rois.size(); ++i) {
+    for (size_t k = i + 1; k < rois.size(); ++k) {
+      vpLampObservation &one = m_observations[i], &other = m_observations[k];
+      vpLedRoi both;
+      vpLampObservation whole;
+      if (alike(one, other) && (rois[i].box & rois[k].box).area() > 0) {
+        both = joined(rois[i], rois[k]);
+        whole = observe(picture, both);
+        recognizer.recognize(whole);
+      }
+      if (alike(whole, one)) {
+        rois[i] = both;
+        one = whole;
+      } else if (isPartOf(one, other)) {
+        std::swap(one, other);
+        std::swap(rois[i], rois[k]);
+      } else if (!isPartOf(other, one)) {
+        continue;
+      }
+      any = true;
+      rois.erase(rois.begin() + static_cast<long>(k));
+      m_observations.erase(m_observations.begin() + static_cast<long>(k));
+      --k;
+    }
+  }
+  return any;
+}
+
+vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
+{
+  vpLampObservation lamp;
+  const bool steady = skipSteady && vpDeepestDip(picture.grey, roi) < stripeAnalyzer.minModulation;
+  const vpOutlineFit fit = steady ? vpOutlineFitter::boxOf(roi)
+                                  : outlineFitter.fit(picture.grey, m_timing.linePositions(),
+                                                      m_timing.samplePositions(), roi, m_blur);
+  if (fit.outline.shape == vpLampOutline::Shape::ellipse) {
+    m_blur = fit.blur;
+  }
+  if (!steady) {
+    lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit, roi));
+  }
+  measureArea(picture, roi, lamp);
+  doubtClipped(lamp);
+  place(lamp, fit, picture.transposed);
+  lamp.cut = roi.cutAcross || roi.cutAlong;
+  const Eigen::Vector2d &centre = fit.outline.centre;
+  if (lamp.cut && !(centre.x() >= 0 && centre.x() < picture.grey.cols && centre.y() >= 0 &&
+                    centre.y() < picture.grey.rows)) {
+    // Less than half of its outline is seen, which fits longer and shorter ellipses about as well.
+    const double anywhere = 0.5 * lamp.outline.diameter();
+    lamp.covariance += anywhere * anywhere * Eigen::Matrix2d::Identity();
+  }
+  return lamp;
+}
+
+END_VISP_NAMESPACE

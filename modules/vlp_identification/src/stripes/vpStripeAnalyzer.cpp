@@ -1,0 +1,348 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_identification/vpStripeAnalyzer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "vpStripeStarts.h"
+#include "waveform/vpDutyRidge.h"
+#include "waveform/vpWaveformFit.h"
+#include "words/vpWordSearch.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+
+const double allExplained = 0.01; // misfit: no other start will do better
+
+//! How many bends the envelope may have.
+int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
+{
+  static const double evenEmitter = 1.6; // the brightest stripe over the dimmest
+  static const int even = 2, uneven = 4;
+  if (peaks.size() < 2) {
+    return 0;
+  }
+  const auto [dimmest, brightest] = std::minmax_element(
+      peaks.begin(), peaks.end(), [&](size_t a, size_t b) { return profile.light[a] < profile.light[b]; });
+  const bool bent = profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
+  return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
+}
+
+//! How bright the lamp is while it is lit, by these peaks of its profile, and what its stripes may then be.
+class Start
+{
+public:
+  vpWaveformFit::Settings settings;
+  std::vector<double> envelope;
+  std::vector<vpStripeStarts::Edge> edges;
+  std::optional<vpStripeStarts::Pulses> pulses;
+
+  Start(const vpStripeProfile &profile, const std::vector<size_t> &peaks, const vpStripeAnalyzer &analyzer)
+      : m_profile(&profile)
+  {
+    settings.modelError = analyzer.modelError;
+    settings.exposureTolerance = analyzer.exposureTolerance;
+    settings.envelopeOrder = envelopeOrderOf(profile, peaks);
+    envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
+    edges = vpStripeStarts::edges(profile, envelope);
+    pulses = vpStripeStarts::pulses(edges);
+  }
+
+  //! Whether there are stripes at all: a sinusoid explains that much more than a level and a slope.
+  bool significant(double least)
+  {
+    const bool soon =
+        pulses &&
+        vpStripeStarts::sinusoidAt(*m_profile, envelope, settings.modelError, pulses->frequency).gain >=
+            least;
+    return soon || (!candidates().empty() && candidates().front().gain >= least);
+  }
+
+  //! The best first.
+  const std::vector<vpStripeStarts::Sinusoid> &candidates()
+  {
+    static const size_t most = 3;
+    if (!m_candidates) {
+      m_candidates = vpStripeStarts::periodogram(*m_profile, envelope, settings.modelError);
+      m_candidates->resize(std::min(m_candidates->size(), most));
+    }
+    return *m_candidates;
+  }
+
+private:
+  const vpStripeProfile *m_profile;
+  std::optional<std::vector<vpStripeStarts::Sinusoid>> m_candidates;
+};
+
+//! The best of several starts.
+void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
+{
+  if ((!best || fit.cost() < best->cost()) && !fit.hollow()) {
+    best.emplace(std::move(fit));
+  }
+}
+
+std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start)
+{
+  std::optional<vpWaveformFit> best;
+  if (start.pulses) {
+    const vpStripeStarts::Pulses &pulses = *start.pulses;
+    vpWaveformFit fit(profile, start.settings, start.envelope);
+    if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, 0, true) && fit.preferStatedExposure()) {
+      if (fit.misfit() < allExplained) {
+        return fit;
+      }
+      keepBetter(best, std::move(fit));
+    }
+  }
+  for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
+    std::vector<double> exposures{profile.exposure};
+    static const double longExposure =
+        0.3; // periods: it may be misstated, and from there no way leads to sharp stripes
+    if (profile.exposure * candidate.frequency > longExposure) {
+      exposures.push_back(0.1 / candidate.frequency);
+    }
+    for (double exposure : exposures) {
+      for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
+        vpWaveformFit fit(profile, start.settings, start.envelope);
+        // The first harmonic peaks in the middle of the pulse.
+        if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure) &&
+            fit.preferStatedExposure()) {
+          keepBetter(best, std::move(fit));
+        }
+      }
+    }
+  }
+  return best;
+}
+
+std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, Start &start)
+{
+  vpWaveformFit::Settings settings = start.settings;
+  settings.twoPulse = true;
+  std::optional<vpWaveformFit> best;
+  if (const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::pairsOfPulses(start.edges)) {
+    vpWaveformFit fit(profile, settings, start.envelope);
+    if (fit.run(pulses->frequency, pulses->phase, pulses->duty, pulses->phaseDifference, 0, true) &&
+        fit.preferStatedExposure()) {
+      if (fit.misfit() < allExplained) {
+        return fit;
+      }
+      keepBetter(best, std::move(fit));
+    }
+  }
+  const double span = profile.time.back() - profile.time.front();
+  for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
+    for (int multiple = 1; multiple <= 2; ++multiple) { // the second harmonic may be the stronger
+      const double f = candidate.frequency / multiple;
+      if (f * std::abs(span) < 0.9) {
+        continue;
+      }
+      for (double k : {0.15, 0.25, 0.35, 0.45}) {
+        for (double phase : {0.0, 0.25, 0.5, 0.75}) {
+          vpWaveformFit fit(profile, settings, start.envelope);
+          if (fit.run(f, phase, 0.3, k) && fit.preferStatedExposure()) {
+            keepBetter(best, std::move(fit));
+          }
+        }
+      }
+    }
+  }
+  return best;
+}
+
+void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
+{
+  using P = vpWaveformFit;
+  features.signal = twoPulse ? vpStripeFeatures::Signal::twoPulse : vpStripeFeatures::Signal::pwm;
+  features.frequency = fit.value(P::frequency);
+  features.frequencySigma = fit.sigma(P::frequency);
+  features.frequencyBound = fit.frequencyBound();
+  features.frequencyNoise = fit.frequencyNoise();
+  features.duty = fit.value(P::duty);
+  features.dutySigma = fit.sigma(P::duty);
+  features.exposure = fit.value(P::exposure);
+  features.exposureSigma = fit.sigma(P::exposure);
+  features.misfit = fit.misfit();
+  features.alongDuty.clear();
+  if (twoPulse) {
+    features.phaseDifference = fit.value(P::phaseDifference);
+    features.phaseDifferenceSigma = fit.sigma(P::phaseDifference);
+  }
+}
+
+/*!
+  A word in place of what leaves \e unexplained of the stripes' power. It has many chips to choose: it has to
+  explain as much more as their number asks for (Schwarz 1978). Chips seen only once can follow any light:
+  such a word has to explain all but noise, and none is taken where pwm or twoPulse may yet be what the lamp
+  sends.
+*/
+std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
+                                            const std::vector<double> &envelope, int envelopeOrder,
+                                            const vpStripeAnalyzer &analyzer, double unexplained,
+                                            size_t stripes)
+{
+  static const double wordMisfit = 0.1;
+  static const double explained = 2, nearlyExplained = 3; // chi-square per degree of freedom
+  static const double exposureTolerance = 0.5;            // of its logarithm
+  const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, exposureTolerance}, envelope);
+  const bool neither = !(unexplained < analyzer.maxMisfit);
+  std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
+  // A word without a name has two pulses or more, and fewer than three stripes would repeat none of them.
+  static const size_t fewest = 3;
+  if (neither && stripes >= fewest && (!word || word->inflation > explained)) {
+    const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
+    static const double clearlyLess = 0.8;
+    if (!word || (other && other->inflation < clearlyLess * word->inflation)) {
+      word = other;
+    }
+  }
+  if (!word || word->confidence < analyzer.minWordConfidence || vpWordSearch::singlePulse(word->word.chips)) {
+    return std::nullopt;
+  }
+  static const double repeated = 1.3, noise = 0.005; // share of the power that no comparison goes below
+  static const double clearly = 10;                  // in chi-square
+  const auto chips = static_cast<double>(word->word.chips.size());
+  const double span = std::abs(profile.time.back() - profile.time.front());
+  const bool once = span < repeated * chips * word->word.chip;
+  const double gain = static_cast<double>(profile.time.size()) *
+                      std::log((unexplained + noise) / (word->word.misfit + noise));
+  if (gain < 2 * M_LN2 * chips + clearly || (once && !(neither && word->inflation < nearlyExplained))) {
+    return std::nullopt;
+  }
+  return word;
+}
+
+//! What was fitted is not what it sends: a word is, where it is known.
+void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Found> &found)
+{
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  features.signal = vpStripeFeatures::Signal::coded;
+  features.frequency = features.frequencySigma = features.frequencyBound = none;
+  features.duty = features.dutySigma = none;
+  features.alongDuty.clear();
+  features.phaseDifference = features.phaseDifferenceSigma = none;
+  features.exposure = features.exposureSigma = none;
+  if (found) {
+    features.chips = vpWordFit::canonical(found->word.chips);
+    features.chipsConfidence = found->confidence;
+    features.frequency = 1 / (found->word.chip * static_cast<double>(features.chips.size()));
+    features.frequencySigma = found->durationSigma * features.frequency;
+    features.misfit = found->word.misfit;
+  }
+}
+
+//! Depth of the stripes, 0 to 1.
+double depthOf(const vpStripeProfile &profile)
+{
+  std::vector<double> sorted = profile.light;
+  std::sort(sorted.begin(), sorted.end());
+  const double low = std::max(0.0, sorted[sorted.size() / 20]);
+  const double high = sorted[sorted.size() - 1 - sorted.size() / 20];
+  return high > 0 ? std::clamp((high - low) / (high + low), 0.0, 1.0) : 0;
+}
+
+//! Where stripes are too few or too blurred for what was fitted to mean much.
+void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edgesAgree)
+{
+  // Less than a period shows how long a pulse or a gap is, not how often it comes; and no fit of so few lines
+  // is put to the test.
+  static const double leastPeriods = 1.2;
+  static const double manyPeriods = 2.2; // that show three edges, wherever they begin
+  static const size_t leastLines = 8;
+  const double span = std::abs(profile.time.back() - profile.time.front());
+  const double periods = span * features.frequency;
+  // Two stripes are soon explained: what is none, a shaded wall, leaves more of itself unexplained than a
+  // lamp.
+  static const double few = 2, fewMisfit = 0.03, enough = 3, enoughMisfit = 0.09, many = 5;
+  const double share = std::clamp((periods - few) / (enough - few), 0.0, 1.0);
+  const double most = periods > many ? 1 : fewMisfit + (enoughMisfit - fewMisfit) * share;
+  // Nor is what hardly ever shines, or hardly ever does not: a dim rim, a crossbar.
+  static const double leastDuty = 0.05;
+  const bool shines = std::min(features.duty, 1 - features.duty) > leastDuty;
+  if (!shines || periods < leastPeriods || (periods < manyPeriods && !edgesAgree) ||
+      profile.time.size() < leastLines || features.misfit > most) {
+    features.frequencySigma = std::max(features.frequencySigma, features.frequency);
+  }
+  // An exposure of a period or more leaves a remainder of the stripes that other exposures, duties and
+  // offsets would leave as well.
+  static const double longExposure = 0.9; // periods
+  if (profile.exposure * features.frequency > longExposure) {
+    static const double anyDuty = 0.3, cycles = 0.1; // standard deviations, of cycles over the profile
+    features.dutySigma = std::max(features.dutySigma, anyDuty);
+    features.frequencySigma = std::max(features.frequencySigma, cycles / span);
+    features.frequencyBound = std::max(features.frequencyBound, cycles / span);
+  }
+}
+
+} // namespace
+
+vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
+{
+  vpStripeFeatures features;
+  static const size_t fewestLines = 6;
+  if (profile.light.size() < fewestLines) {
+    return features;
+  }
+  const std::vector<size_t> peaks = vpStripeStarts::peaks(profile);
+  features.stripes = static_cast<unsigned int>(peaks.size());
+  features.modulation = depthOf(profile);
+
+  Start byAll(profile, peaks, *this);
+  if (features.modulation < minModulation || profile.agreement < minAgreement ||
+      !byAll.significant(minSignificance)) {
+    return features;
+  }
+  features.misfit = 1; // where no pulses explain anything
+  Start *start = &byAll;
+  std::optional<Start> byWhole;
+  std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
+  // A stripe at the lamp's end is dim because the lamp is, or because it is not whole.
+  const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
+  if (whole.size() < peaks.size()) {
+    byWhole.emplace(profile, whole, *this);
+    std::optional<vpWaveformFit> other = fitPwm(profile, *byWhole);
+    if (other && (!pwm || other->cost() < pwm->cost())) {
+      pwm = std::move(other);
+      start = &*byWhole;
+    }
+  }
+  if (pwm) {
+    pwm->integrate();
+    take(features, *pwm, false);
+    if (pwm->hidesDuty()) {
+      features.alongDuty = pwm->alongDuty();
+      vpDutyRidge::settle(features);
+    }
+  }
+  // A second pulse explains a little of what blur and tone curve do to one, too.
+  static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;
+  if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
+    std::optional<vpWaveformFit> two = fitTwoPulse(profile, *start);
+    if (two && two->misfit() < maxMisfit &&
+        (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
+      two->integrate();
+      take(features, *two, true);
+    }
+  }
+  widen(features, profile, start->pulses.has_value());
+  static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
+  if (!(features.misfit < beyondDoubt)) {
+    const std::optional<vpWordSearch::Found> word =
+        findWord(profile, byAll.envelope, byAll.settings.envelopeOrder, *this, features.misfit, peaks.size());
+    if (word || !(features.misfit < maxMisfit)) {
+      takeCoded(features, word);
+    }
+  }
+  return features;
+}
+
+END_VISP_NAMESPACE

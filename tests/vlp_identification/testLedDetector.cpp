@@ -1,0 +1,350 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// The detector as a whole: from a picture to named lamps.
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_identification/vpLedDetector.h>
+
+#include "common/vpExpectError.h"
+#include "common/vpLampPicture.h"
+#include "common/vpUpwardRig.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+
+vpLampMap map()
+{
+  vpLampMap map;
+  for (double frequency : {2000, 2600, 3500}) {
+    vpLamp lamp;
+    lamp.id = "L" + std::to_string(static_cast<int>(frequency));
+    lamp.modulation.kind = vpModulation::Kind::pwm;
+    lamp.modulation.frequency = frequency;
+    map.lamps.push_back(lamp);
+  }
+  return map;
+}
+
+vpPaintedLamp lamp(double u, double v, double frequency, double duty = 0.5)
+{
+  vpPaintedLamp lamp;
+  lamp.centre = {u, v};
+  lamp.a = lamp.b = 30;
+  lamp.frequency = frequency;
+  lamp.phase = 0.3;
+  lamp.pwm(duty);
+  return lamp;
+}
+
+vpLampPicture picture()
+{
+  vpLampPicture picture;
+  picture.width = 400;
+  picture.height = 320;
+  picture.rowTime = picture.exposure = 40e-6;
+  picture.blur = 0.7;
+  picture.lamps = {lamp(80.3, 70.6, 2000), lamp(300.7, 90.2, 2600), lamp(120.4, 240.8, 3500),
+                   lamp(310, 250, 5000)};
+  return picture;
+}
+
+const vpLampObservation *find(const vpLedDetector &detector, const std::string &id)
+{
+  for (const vpLampObservation &lamp : detector.observations()) {
+    if (lamp.id == id) {
+      return &lamp;
+    }
+  }
+  return nullptr;
+}
+
+TEST(LedDetector, NamesKnownLampsAndReportsAnUnknownOne)
+{
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  ASSERT_TRUE(detector.detect(picture().render()));
+  EXPECT_EQ(detector.getNbObjects(), 4u);
+  ASSERT_EQ(detector.observations().size(), 4u);
+  for (const char *id : {"L2000", "L2600", "L3500"}) {
+    ASSERT_NE(find(detector, id), nullptr) << id;
+    EXPECT_GT(find(detector, id)->confidence, 0.99);
+    EXPECT_FALSE(find(detector, id)->cut);
+  }
+  const vpLampObservation *unknown = find(detector, "");
+  ASSERT_NE(unknown, nullptr);
+  EXPECT_NEAR(unknown->features.frequency, 5000, 10);
+  EXPECT_FALSE(unknown->remark.empty());
+  EXPECT_NEAR(find(detector, "L2000")->point.x(), 80.3, 0.05);
+  EXPECT_NEAR(find(detector, "L2000")->point.y(), 70.6, 0.05);
+  EXPECT_NEAR(find(detector, "L2000")->outline.diameter(), 60, 0.1);
+}
+
+TEST(LedDetector, MessagesAndPolygonsAsEveryVispDetector)
+{
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  detector.detect(picture().render());
+  vpDetectorBase &base = detector;
+  for (size_t i = 0; i < base.getNbObjects(); ++i) {
+    EXPECT_EQ(base.getMessage(i), detector.observations()[i].id);
+    EXPECT_EQ(base.getPolygon(i).size(), 4u);
+    EXPECT_NEAR(base.getCog(i).get_u(), detector.observations()[i].point.x(), 1);
+    EXPECT_NEAR(base.getCog(i).get_v(), detector.observations()[i].point.y(), 1);
+    EXPECT_NEAR(base.getBBox(i).getWidth(), 60, 2);
+  }
+}
+
+TEST(LedDetector, ColumnsSeeTheSameLampsAsRows)
+{
+  vpLampPicture painted = picture();
+  painted.columns = true;
+  vpVlpRig columns = vpUpwardRig(400, 320);
+  columns.shutter.readout = vpRollingShutter::Readout::columns;
+  vpLedDetector detector(columns, map());
+  ASSERT_TRUE(detector.detect(painted.render()));
+  for (const vpPaintedLamp &lamp : painted.lamps) {
+    const bool known = lamp.frequency < 4000;
+    const auto seen = find(detector, known ? "L" + std::to_string(static_cast<int>(lamp.frequency)) : "");
+    ASSERT_NE(seen, nullptr) << lamp.frequency;
+    EXPECT_LT((seen->point - lamp.centre).norm(), 0.05) << lamp.frequency;
+    EXPECT_NEAR(seen->time, 40e-6 * lamp.centre.x() + 20e-6, 2e-6) << "lines are columns";
+  }
+}
+
+TEST(LedDetector, NearestNeighbourResizeKeepsTheFrequencyNearHalfTheSamplingRate)
+{
+  // Sensor of 2.56 times the lines; every other line step is 2, the others 3: taken as even, 3500 Hz comes
+  // out wrong.
+  vpLampPicture sensor;
+  sensor.width = 512;
+  sensor.height = 512;
+  sensor.rowTime = 45e-6;
+  sensor.exposure = 60e-6;
+  sensor.blur = 1;
+  sensor.lamps = {lamp(256.2, 255.7, 3500)};
+  sensor.lamps[0].a = sensor.lamps[0].b = 150;
+  const vpImage<unsigned char> full = sensor.render();
+  vpImage<unsigned char> delivered(200, 200);
+  for (unsigned int y = 0; y < 200; ++y) {
+    for (unsigned int x = 0; x < 200; ++x) {
+      delivered[y][x] = full[static_cast<unsigned int>(y * 2.56)][static_cast<unsigned int>(x * 2.56)];
+    }
+  }
+  vpVlpRig resized = vpUpwardRig(200, 200);
+  resized.shutter.rowTime = 45e-6;
+  resized.shutter.exposure = 60e-6;
+  resized.resize.method = vpPictureResize::Method::nearest;
+  resized.resize.sourceWidth = resized.resize.sourceHeight = 512;
+  vpLedDetector detector(resized, map());
+  ASSERT_TRUE(detector.detect(delivered));
+  ASSERT_EQ(detector.observations().size(), 1u);
+  EXPECT_EQ(detector.observations()[0].id, "L3500");
+  EXPECT_NEAR(detector.observations()[0].features.frequency, 3500, 5);
+}
+
+TEST(LedDetector, LampCutByTheBorderIsFlagged)
+{
+  vpLampPicture painted = picture();
+  painted.lamps = {lamp(8, 150, 2000)};
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  ASSERT_TRUE(detector.detect(painted.render()));
+  ASSERT_EQ(detector.observations().size(), 1u);
+  EXPECT_TRUE(detector.observations()[0].cut);
+  EXPECT_EQ(detector.observations()[0].id, "L2000");
+}
+
+TEST(LedDetector, UnmodulatedLampAndWindowAreNoLampsOfTheMap)
+{
+  vpLampPicture painted = picture();
+  vpPaintedLamp window = lamp(300, 240, 0);
+  window.rectangle(120, 90);
+  window.pulses = {{0, 1}};
+  vpPaintedLamp steady = lamp(80, 80, 0);
+  steady.pulses = {{0, 1}};
+  painted.lamps = {window, steady};
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  ASSERT_TRUE(detector.detect(painted.render()));
+  EXPECT_EQ(detector.observations().size(), 2u);
+  for (const vpLampObservation &seen : detector.observations()) {
+    EXPECT_TRUE(seen.id.empty());
+    EXPECT_EQ(seen.features.signal, vpStripeFeatures::Signal::unmodulated);
+  }
+}
+
+// At a first look what shines steadily is told from what blinks, whatever its shape; lamps are found as ever.
+TEST(LedDetector, SteadyLightNeedsNoOutline)
+{
+  vpLampPicture made = picture();
+  vpPaintedLamp bulb = lamp(200.4, 150.2, 0), panel = lamp(205.1, 60.3, 0), tube = lamp(210, 290, 0);
+  panel.angle = 0.2;
+  panel.rectangle(60, 45);
+  tube.rectangle(90, 14);
+  for (vpPaintedLamp *steady : {&bulb, &panel, &tube}) {
+    steady->pulses = {{0, 1}};
+    made.lamps.push_back(*steady);
+  }
+  const vpImage<unsigned char> I = made.render();
+  vpLedDetector with(vpUpwardRig(400, 320), map()), without(vpUpwardRig(400, 320), map());
+  without.skipSteady = true;
+  ASSERT_TRUE(with.detect(I));
+  ASSERT_TRUE(without.detect(I));
+  ASSERT_EQ(without.observations().size(), with.observations().size());
+  int boxes = 0;
+  for (const vpLampObservation &seen : without.observations()) {
+    const bool steady = seen.features.signal == vpStripeFeatures::Signal::unmodulated;
+    boxes += steady ? 1 : 0;
+    EXPECT_EQ(seen.outline.shape == vpLampOutline::Shape::region, steady);
+    if (!seen.id.empty()) {
+      ASSERT_NE(find(with, seen.id), nullptr);
+      static const double still = 0.005; // px, of the last step of a fit: these began otherwise
+      EXPECT_LT((find(with, seen.id)->point - seen.point).norm(), still);
+    }
+  }
+  EXPECT_EQ(boxes, 3);
+  for (const char *id : {"L2000", "L2600", "L3500"}) {
+    EXPECT_EQ(find(without, id) != nullptr, find(with, id) != nullptr) << id;
+  }
+}
+
+// Stripes that hardly show, as of an exposure of nearly a period: no first look may take them for steady
+// light.
+TEST(LedDetector, FaintStripesAreNoSteadyLight)
+{
+  for (const double amplitude : {60.0, 150.0}) {
+    vpLampPicture made = picture();
+    made.exposure = 0.85 / 2000;
+    made.lamps = {lamp(80.3, 70.6, 2000)};
+    made.lamps[0].amplitude = amplitude;
+    vpLedDetector detector(vpUpwardRig(400, 320), map());
+    detector.skipSteady = true;
+    ASSERT_TRUE(detector.detect(made.render()));
+    ASSERT_EQ(detector.observations().size(), 1u);
+    EXPECT_NE(detector.observations()[0].features.signal, vpStripeFeatures::Signal::unmodulated) << amplitude;
+  }
+}
+
+TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
+{
+  vpLampPicture painted = picture();
+  for (vpPaintedLamp &lamp : painted.lamps) {
+    lamp.amplitude = 900; // lit lines clip at 255
+  }
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  ASSERT_TRUE(detector.detect(painted.render()));
+  const vpLampObservation *seen = find(detector, "L2000");
+  ASSERT_NE(seen, nullptr);
+  EXPECT_GT(seen->saturated, 0.3);
+  EXPECT_LT((seen->point - painted.lamps[0].centre).norm(), 0.5);
+}
+
+//! Clipped stripes seem longer and lie elsewhere; what is said of them is as uncertain as that.
+TEST(LedDetector, ClippedStripesAreAsUncertainAsTheyAre)
+{
+  double frequency = 0, duty = 0, most = 0; // squares of normalised errors
+  int count = 0;
+  for (int phase = 0; phase < 40; ++phase) {
+    vpLampPicture painted = picture();
+    painted.exposure = 100e-6;
+    painted.lamps.resize(1);
+    painted.lamps[0].frequency = 2000 + 61.7 * phase;
+    painted.lamps[0].phase = phase / 40.0;
+    painted.lamps[0].amplitude = 700;
+    vpLedDetector detector(vpUpwardRig(400, 320), map());
+    detector.detect(painted.render());
+    if (detector.observations().size() != 1 || !(detector.observations()[0].saturated > 0.4) ||
+        !std::isfinite(detector.observations()[0].features.frequency)) {
+      continue;
+    }
+    const vpStripeFeatures &seen = detector.observations()[0].features;
+    ++count;
+    const double off = (seen.frequency - painted.lamps[0].frequency) / seen.frequencySigma;
+    frequency += off * off;
+    most = std::max(most, std::abs(off));
+    duty += std::pow((seen.duty - 0.5) / seen.dutySigma, 2);
+  }
+  ASSERT_GT(count, 20);
+  EXPECT_LT(std::sqrt(frequency / count), 1.5);
+  EXPECT_LT(most, 5);
+  EXPECT_LT(std::sqrt(duty / count), 2);
+}
+
+//! Their region holds both, and what is found in its parts may be the same lamp.
+// A wave of twice the frequency explains two short pulses as well, where the lamp may be dark in between.
+TEST(LedDetector, NoiseMakesNoFrequencyThatIsNone)
+{
+  int told = 0;
+  for (unsigned int seed = 1; seed <= 60; ++seed) {
+    vpLampPicture noisy = picture();
+    noisy.width = noisy.height = 200;
+    noisy.noise = 40;
+    noisy.seed = seed;
+    const double frequency = 2.07 / (146 * noisy.rowTime);
+    vpPaintedLamp two = lamp(99.5, 99.5, frequency, 0.2);
+    two.a = two.b = 73;
+    two.phase = 0.0167 * seed;
+    noisy.lamps = {two};
+    vpLedDetector detector(vpUpwardRig(200, 200), map());
+    detector.detect(noisy.render());
+    for (const vpLampObservation &seen : detector.observations()) {
+      if (seen.features.signal == vpStripeFeatures::Signal::pwm &&
+          seen.features.frequencySigma < 0.1 * seen.features.frequency) {
+        ++told;
+        EXPECT_NEAR(seen.features.frequency, frequency, 6 * seen.features.frequencySigma) << "seed " << seed;
+      }
+    }
+  }
+  EXPECT_GE(told, 15); // of 60: the others show their pulses not twice
+}
+
+TEST(LedDetector, LampsThatPassEachOtherAreSeenOnce)
+{
+  vpLampPicture passing = picture();
+  int named = 0;
+  for (int step = 0; step < 120; ++step) {
+    passing.lamps = {lamp(180, 150, 2000), lamp(222 + 0.2 * step, 120 + 0.5 * step, 2600)};
+    passing.lamps[0].phase = 0.083 * step;
+    passing.lamps[1].phase = 0.047 * step;
+    vpLedDetector detector(vpUpwardRig(passing.width, passing.height), map());
+    detector.detect(passing.render());
+    std::vector<std::string> ids;
+    for (const vpLampObservation &seen : detector.observations()) {
+      if (!seen.id.empty()) {
+        ids.push_back(seen.id);
+      }
+    }
+    named += static_cast<int>(ids.size());
+    std::sort(ids.begin(), ids.end());
+    EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end()) << "step " << step;
+  }
+  EXPECT_GT(named, 120);
+}
+
+TEST(LedDetector, RefusesAPictureOfAnotherSize)
+{
+  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  const vpImage<unsigned char> I(320, 402);
+  vpExpectError([&] { detector.detect(I); }, {"402 x 320", "400 x 320"});
+  vpExpectError([&] { vpLedDetector(vpUpwardRig(0, 0), map()); }, {"size"});
+}
+
+TEST(LedDetector, DarkWhiteAndTinyPicturesHoldNoKnownLamp)
+{
+  for (const auto &[width, height] : {std::pair{400u, 320u}, {1u, 1u}, {400u, 1u}, {1u, 320u}}) {
+    for (unsigned char grey : {0, 128, 255}) {
+      vpLedDetector detector(vpUpwardRig(width, height), map());
+      detector.detect(vpImage<unsigned char>(height, width, grey));
+      for (const vpLampObservation &seen : detector.observations()) {
+        EXPECT_TRUE(seen.id.empty()) << width << " x " << height << ", grey " << static_cast<int>(grey);
+      }
+    }
+  }
+}
+
+} // namespace

@@ -1,0 +1,269 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Features of the stripes of painted lamps: frequency, duty and phase difference with honest sigmas, and what
+// kind of signal it is.
+
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <visp3/vlp_identification/vpStripeAnalyzer.h>
+
+#include "common/vpLampPicture.h"
+
+#ifdef ENABLE_VISP_NAMESPACE
+using namespace VISP_NAMESPACE_NAME;
+#endif
+
+namespace
+{
+
+using Signal = vpStripeFeatures::Signal;
+
+//! One lamp of random place and phase, seen by a camera of 40 us a line.
+struct Scene {
+  double radius = 28;     // px
+  double amplitude = 150; // grey levels
+  double exposure = 40e-6;
+  bool columns = false;
+  vpPaintedLamp lamp;
+  unsigned int seed = 1;
+
+  vpStripeFeatures features() const
+  {
+    vpLampPicture picture;
+    picture.width = picture.height = static_cast<int>(2 * radius + 44);
+    picture.rowTime = 40e-6;
+    picture.exposure = exposure;
+    picture.columns = columns;
+    picture.blur = 0.7;
+    picture.seed = seed;
+    vpPaintedLamp painted = lamp;
+    painted.a = painted.b = radius;
+    painted.amplitude = amplitude;
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> shift(-0.5, 0.5);
+    painted.centre = {0.5 * picture.width + shift(random), 0.5 * picture.height + shift(random)};
+    painted.phase = shift(random) + 0.5;
+    picture.lamps = {painted};
+    const vpImage<unsigned char> I = picture.render();
+
+    vpRollingShutter shutter;
+    shutter.rowTime = 40e-6;
+    shutter.exposure = exposure;
+    shutter.readout = columns ? vpRollingShutter::Readout::columns : vpRollingShutter::Readout::rows;
+    const vpLineTiming timing(shutter, {}, I.getWidth(), I.getHeight());
+    const vpLinePicture lines(I, columns);
+    const auto rois = vpLedRoiDetector().detect(lines.grey);
+    if (rois.empty()) {
+      ADD_FAILURE() << "no lamp found";
+      return {};
+    }
+    const vpOutlineFit fit =
+        vpOutlineFitter().fit(lines.grey, timing.linePositions(), timing.samplePositions(), rois[0]);
+    return vpStripeAnalyzer().analyze(vpStripeProfile::along(lines.grey, timing, fit, rois[0]));
+  }
+};
+
+struct Spread {
+  double sum = 0, squares = 0, most = 0, within = 0;
+  int count = 0;
+
+  void add(double error, double sigma)
+  {
+    sum += error;
+    squares += error * error;
+    most = std::max(most, std::abs(error / sigma));
+    within += std::abs(error) < 3 * sigma ? 1 : 0;
+    ++count;
+  }
+  double bias() const { return sum / count; }
+  double rms() const { return std::sqrt(squares / count); }
+  void print(const std::string &what) const
+  {
+    std::cout << what << ": bias " << bias() << ", rms " << rms() << ", largest error " << most
+              << " of its sigma, " << 100 * within / count << " % within 3\n";
+  }
+};
+
+class Pwm : public testing::TestWithParam<std::tuple<double, bool>> // amplitude, columns
+{
+};
+
+TEST_P(Pwm, FrequencyAndDutyWithTheirSigma)
+{
+  const auto [amplitude, columns] = GetParam();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> frequency(1600, 6000), duty(0.25, 0.75);
+  Spread frequencies, duties;
+  for (unsigned int trial = 0; trial < 100; ++trial) {
+    Scene scene;
+    scene.amplitude = amplitude;
+    scene.columns = columns;
+    scene.seed = trial + 1;
+    scene.lamp.frequency = frequency(random);
+    const double share = duty(random);
+    scene.lamp.pwm(share);
+    const vpStripeFeatures seen = scene.features();
+    ASSERT_EQ(seen.signal, Signal::pwm)
+        << "trial " << trial << ", " << scene.lamp.frequency << " Hz, duty " << share;
+    EXPECT_LT(seen.frequencySigma, 0.01 * scene.lamp.frequency) << "trial " << trial;
+    frequencies.add(seen.frequency - scene.lamp.frequency, seen.frequencySigma);
+    duties.add(seen.duty - share, std::hypot(seen.dutySigma, 0.03)); // as recognition does
+  }
+  frequencies.print("frequency, Hz");
+  duties.print("duty");
+  EXPECT_LT(std::abs(frequencies.bias()), 1);
+  EXPECT_LT(frequencies.rms(), amplitude > 100 ? 1.5 : 3);
+  EXPECT_GE(frequencies.within, 99);
+  EXPECT_LT(std::abs(duties.bias()), 0.01);
+  EXPECT_GE(duties.within, 99);
+}
+
+INSTANTIATE_TEST_SUITE_P(RowsAndColumns, Pwm,
+                         testing::Combine(testing::Values(150.0, 30.0), testing::Values(false, true)));
+
+// The lamp's first or last line may show the dim end of a stripe, which is no sign of a dim rim.
+TEST(StripeAnalyzer, StripesCutByTheRimDoNotBiasTheFrequency)
+{
+  Spread frequencies;
+  for (unsigned int trial = 0; trial < 200; ++trial) {
+    Scene scene;
+    scene.lamp.frequency = 1000 + 6 * trial;
+    scene.seed = trial + 1;
+    scene.lamp.pwm(0.35);
+    const vpStripeFeatures seen = scene.features();
+    ASSERT_EQ(seen.signal, Signal::pwm) << "trial " << trial;
+    frequencies.add(seen.frequency - scene.lamp.frequency, seen.frequencySigma);
+  }
+  frequencies.print("frequency, Hz");
+  EXPECT_EQ(frequencies.within, 200);
+  EXPECT_LT(frequencies.rms(), 0.8);
+}
+
+TEST(StripeAnalyzer, LongExposureDoesNotBiasFrequencyOrDuty)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> frequency(1200, 2600), duty(0.3, 0.7);
+  Spread frequencies, duties;
+  for (unsigned int trial = 0; trial < 50; ++trial) {
+    Scene scene;
+    scene.exposure = 150e-6; // up to 0.4 periods
+    scene.seed = trial + 1;
+    scene.lamp.frequency = frequency(random);
+    const double share = duty(random);
+    scene.lamp.pwm(share);
+    const vpStripeFeatures seen = scene.features();
+    ASSERT_EQ(seen.signal, Signal::pwm) << "trial " << trial;
+    frequencies.add(seen.frequency - scene.lamp.frequency, seen.frequencySigma);
+    duties.add(seen.duty - share, std::hypot(seen.dutySigma, 0.03));
+  }
+  frequencies.print("frequency, Hz");
+  duties.print("duty");
+  EXPECT_LT(frequencies.rms(), 4);
+  EXPECT_GE(frequencies.within, 49);
+  EXPECT_GE(duties.within, 49);
+}
+
+// Pulse and exposure together longer than a period leave no line dark. The dark rest of the period under an
+// exposure as long as the pulse lacks would look alike, of a lamp that never goes out.
+TEST(StripeAnalyzer, LampThatNoLineShowsDarkIsNoShorterPulse)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> exposure(0.5, 0.8), together(1.03, 1.3);
+  Spread frequencies, duties;
+  for (unsigned int trial = 0; trial < 50; ++trial) {
+    const double exposed = exposure(random), share = std::min(0.85, together(random) - exposed);
+    Scene scene;
+    scene.radius = 40;
+    scene.exposure = 200e-6;
+    scene.seed = trial + 1;
+    scene.lamp.frequency = exposed / scene.exposure;
+    scene.lamp.pwm(share);
+    const vpStripeFeatures seen = scene.features();
+    ASSERT_EQ(seen.signal, Signal::pwm) << "trial " << trial;
+    frequencies.add(seen.frequency - scene.lamp.frequency, seen.frequencySigma);
+    duties.add(seen.duty - share, std::hypot(seen.dutySigma, 0.03));
+  }
+  frequencies.print("frequency, Hz");
+  duties.print("duty");
+  EXPECT_GE(frequencies.within, 49);
+  EXPECT_EQ(duties.within, 50);
+}
+
+TEST(StripeAnalyzer, TwoPulsesAndTheirPhaseDifference)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> frequency(1000, 2000), difference(0.25, 0.42);
+  Spread frequencies, differences;
+  int missed = 0;
+  for (unsigned int trial = 0; trial < 40; ++trial) {
+    Scene scene;
+    scene.radius = 60;
+    scene.seed = trial + 1;
+    scene.lamp.frequency = frequency(random);
+    const double k = difference(random);
+    scene.lamp.twoPulse(0.3, k);
+    const vpStripeFeatures seen = scene.features();
+    if (seen.signal != Signal::twoPulse) {
+      ++missed;
+      continue;
+    }
+    frequencies.add(seen.frequency - scene.lamp.frequency, seen.frequencySigma);
+    differences.add(seen.phaseDifference - k, std::hypot(seen.phaseDifferenceSigma, 0.01));
+  }
+  frequencies.print("frequency, Hz");
+  differences.print("phase difference, periods");
+  EXPECT_LE(missed, 1);
+  EXPECT_LT(frequencies.rms(), 2);
+  EXPECT_LT(differences.rms(), 0.01);
+}
+
+TEST(StripeAnalyzer, WordsAreCodedNotPwm)
+{
+  int pwm = 0;
+  const std::vector<std::string> words = {"01010110010111001101", "0101100110100101100110010110",
+                                          "01010111100001101011"};
+  for (unsigned int trial = 0; trial < 30; ++trial) {
+    Scene scene;
+    scene.seed = trial + 1;
+    scene.lamp.chips(words[trial % words.size()]);
+    scene.lamp.frequency = 8000.0 / words[trial % words.size()].size(); // 3.1 lines a chip
+    const vpStripeFeatures seen = scene.features();
+    pwm += seen.signal == Signal::pwm ? 1 : 0;
+    if (seen.signal == Signal::coded) {
+      EXPECT_TRUE(std::isnan(seen.frequency));
+    }
+  }
+  EXPECT_EQ(pwm, 0);
+}
+
+TEST(StripeAnalyzer, SteadyLightHasNoStripes)
+{
+  for (unsigned int trial = 0; trial < 20; ++trial) {
+    Scene scene;
+    scene.seed = trial + 1;
+    scene.amplitude = 20 + 10 * trial;
+    EXPECT_EQ(scene.features().signal, Signal::unmodulated) << "amplitude " << scene.amplitude;
+  }
+}
+
+TEST(StripeAnalyzer, EmptyAndShortProfilesSayNothing)
+{
+  vpStripeProfile profile;
+  profile.exposure = 40e-6;
+  EXPECT_EQ(vpStripeAnalyzer().analyze(profile).signal, Signal::unmodulated);
+  for (int line = 0; line < 5; ++line) {
+    profile.time.push_back(40e-6 * line);
+    profile.light.push_back(line % 2 == 0 ? 100 : 0);
+    profile.sigma.push_back(1);
+  }
+  EXPECT_EQ(vpStripeAnalyzer().analyze(profile).signal, Signal::unmodulated);
+}
+
+} // namespace
