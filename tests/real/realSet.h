@@ -68,6 +68,7 @@ public:
     rig.shutter.rowTime = 1e-6 * number(image["row_time_us"] ? image : shutter, "row_time_us", 40);
     rig.shutter.rowTimeSigma = vpVlpRig::uncalibratedRowTime * rig.shutter.rowTime;
     rig.shutter.exposure = exposure > 0 ? exposure : rig.shutter.rowTime;
+    rig.shutter.exposureSigma = vpVlpRig::uncalibratedExposure * rig.shutter.exposure;
     const YAML::Node readout = image["readout"] ? image["readout"]
                                : shutter        ? shutter["readout"]
                                                 : YAML::Node();

@@ -78,6 +78,7 @@ vpVlpRig makeRig()
   rig.shutter.rowTime = 43.1e-6;
   rig.shutter.rowTimeSigma = 2e-9;
   rig.shutter.exposure = 20e-6; // the paper's Table 1
+  rig.shutter.exposureSigma = 0.01 * rig.shutter.exposure;
   rig.bMc = vpHomogeneousMatrix(vpTranslationVector(0, 0, 0.19), vpRotationMatrix(vpRzyxVector(M_PI, 0, 0)));
   return rig;
 }

@@ -116,7 +116,7 @@ vpCameraParameters vpPictureResize::sensor(const vpCameraParameters &delivered, 
 
 vpLineTiming::vpLineTiming(const vpRollingShutter &shutter, const vpPictureResize &resize, unsigned int width,
                            unsigned int height)
-    : m_exposure(shutter.exposure)
+    : m_exposure(shutter.exposure), m_logExposureSigma(shutter.logExposureSigma())
 {
   const bool columns = shutter.alongColumns();
   const unsigned int lines = columns ? width : height;

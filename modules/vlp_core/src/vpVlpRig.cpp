@@ -66,6 +66,8 @@ void readShutter(const vpYamlNode &node, vpRollingShutter &shutter)
   shutter.rowTimeSigma =
       node.number("row_time_sigma_s", Range::notNegative, vpVlpRig::uncalibratedRowTime * shutter.rowTime);
   shutter.exposure = node.number("exposure_s", Range::positive);
+  shutter.exposureSigma =
+      node.number("exposure_sigma_s", Range::notNegative, vpVlpRig::uncalibratedExposure * shutter.exposure);
   shutter.readout = static_cast<Readout>(node.choice("readout", readoutNames));
   node.finish();
 }
@@ -148,6 +150,7 @@ std::string rigText(const vpVlpRig &rig)
   text += "shutter: {row_time_s: " + vpNumberText(shutter.rowTime) +
           ", row_time_sigma_s: " + vpNumberText(shutter.rowTimeSigma) +
           ", exposure_s: " + vpNumberText(shutter.exposure) +
+          ", exposure_sigma_s: " + vpNumberText(shutter.exposureSigma) +
           ", readout: " + readoutNames[static_cast<size_t>(shutter.readout)] + "}\n";
   if (rig.resize.method != Method::none) {
     text += std::string("resize: {method: ") + (rig.resize.method == Method::nearest ? "nearest" : "area") +

@@ -166,6 +166,7 @@ vpStripePrediction::vpStripePrediction(const vpVlpRig &rig)
   std::sort(m_middle.begin(), m_middle.end()); // a reversed readout
   m_lineTime = std::abs(timing.meanLineTime());
   m_exposure = std::hypot(timing.exposure(), timing.averaging());
+  m_logExposureSigma = timing.logExposureSigma();
   m_relativeRowTime = rig.shutter.rowTimeSigma / rig.shutter.rowTime;
 }
 
@@ -281,7 +282,8 @@ double vpStripePrediction::takenForExposure(const vpModulation &modulation) cons
   if (other > whole) {
     return 0;
   }
-  const double less = vpStripeLimits::unlikely(duty / other, other) - vpStripeLimits::unlikely(1, duty);
+  const double less = vpStripeLimits::unlikely(duty / other, m_logExposureSigma, other) -
+                      vpStripeLimits::unlikely(1, m_logExposureSigma, duty);
   return less < 0 ? std::abs(other - duty) : vpStripeLimits::spread(other - duty, less);
 }
 

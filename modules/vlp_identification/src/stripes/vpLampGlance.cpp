@@ -39,6 +39,7 @@ void vpLampGlance::readProfile(const vpLinePicture &picture, const vpLineTiming 
   m_profile.light.clear();
   m_profile.sigma.clear();
   m_profile.exposure = std::hypot(timing.exposure(), timing.averaging());
+  m_profile.logExposureSigma = timing.logExposureSigma();
   double brightest = 0;
   m_lengths.clear();
   for (int line = static_cast<int>(std::ceil(box(1) + margin)); line <= box(3) - margin; ++line) {

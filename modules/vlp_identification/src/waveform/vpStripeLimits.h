@@ -5,6 +5,7 @@
 #ifndef vpStripeLimits_h
 #define vpStripeLimits_h
 
+#include <algorithm>
 #include <cmath>
 
 #include <visp3/vlp_core/vpVlpNamespace.h>
@@ -25,14 +26,18 @@ constexpr double untrue = 0.02;
 
 /*!
   Pulse and exposure are both boxes, and which is which the stripes do not say: how far an exposure and a
-  pulse are from what they should be, a chi-square. \param exposure As a share of the stated one. \param duty
-  Lit share of the period.
+  pulse are from what they should be, a chi-square. \param exposure As a share of the stated one. \param sigma
+  Of the stated one's logarithm. \param duty Lit share of the period.
 */
-inline double unlikely(double exposure, double duty)
+inline double unlikely(double exposure, double sigma, double duty)
 {
-  const double misstated = 0.15; // of the exposure's logarithm, standard deviation
-  const double usual = 0.3;      // of the duty
-  return std::pow(std::log(exposure) / misstated, 2) + std::pow((duty - 0.5) / usual, 2);
+  const double softened = 0.15;  // of the exposure's logarithm, by tone curves and blur
+  const double spread = 0.3;     // of a duty that may be any
+  const double least = 0.05;     // of lit and of dark share: no lamp map has less
+  const double impossible = 100; // chi-square
+  const double outside = std::min(duty, 1 - duty) < least ? impossible : 0;
+  return std::pow(std::log(exposure) / std::hypot(softened, sigma), 2) + std::pow((duty - 0.5) / spread, 2) +
+         outside;
 }
 
 //! Standard deviation that a choice between two values leaves, the one \e difference in chi-square less

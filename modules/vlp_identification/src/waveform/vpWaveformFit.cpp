@@ -28,6 +28,11 @@ vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &set
   m_time = Eigen::Map<const Eigen::ArrayXd>(profile.time.data(), n) - middle;
   m_light = Eigen::Map<const Eigen::ArrayXd>(profile.light.data(), n);
   m_given = Eigen::Map<const Eigen::ArrayXd>(envelope.data(), n);
+  static const double shortest = 10, longest = 5, sigmas = 5; // times the stated exposure
+  m_logExposureSigma = std::hypot(m_settings.exposureTolerance, profile.logExposureSigma);
+  const double farthest = std::exp(sigmas * profile.logExposureSigma);
+  m_leastExposure = profile.exposure / std::max(shortest, farthest);
+  m_mostExposure = profile.exposure * std::max(longest, farthest);
   // A dark line has some light of its neighbours, by blur and compression.
   static const double spill = 0.01; // share of theirs, standard deviation
   m_weight = (Eigen::Map<const Eigen::ArrayXd>(profile.sigma.data(), n).square() +
@@ -110,8 +115,9 @@ vpWaveformFit::Prior vpWaveformFit::prior(int parameter, const Vector &x) const
   }
   switch (parameter) {
   case exposure: {
-    const Prior normal = bell(m_profile->exposure, m_settings.exposureTolerance * m_profile->exposure);
-    return {std::log1p(normal.chiSquare), normal.weight / (1 + normal.chiSquare), normal.mean};
+    const double log = std::log(x(exposure) / m_profile->exposure), z = log / m_logExposureSigma,
+                 perLog = m_logExposureSigma * x(exposure);
+    return {std::log1p(z * z), 1 / (perLog * perLog * (1 + z * z)), x(exposure) * (1 - log)};
   }
   case duty:
     return bell(0.5, 0.3); // the spread of a uniform one
@@ -130,8 +136,7 @@ void vpWaveformFit::keepPossible(Vector &x) const
       std::max(std::clamp(x(frequency), m_startFrequency - reach, m_startFrequency + reach), 0.1 / m_half);
   x(duty) = std::clamp(x(duty), 0.02, 0.98);
   if (m_freeExposure) {
-    x(exposure) =
-        std::clamp(x(exposure), leastExposure * m_profile->exposure, mostExposure * m_profile->exposure);
+    x(exposure) = std::clamp(x(exposure), m_leastExposure, m_mostExposure);
   }
   if (m_settings.twoPulse) {
     x(phaseDifference) = std::clamp(x(phaseDifference), 0.5 * x(duty), 0.5);

@@ -93,7 +93,6 @@ public:
 
 private:
   static constexpr int mostLinear = 6;
-  static constexpr double leastExposure = 0.1, mostExposure = 5; // of the stated one
 
   struct Prior {
     double chiSquare = 0, weight = 0, mean = 0;
@@ -107,8 +106,14 @@ private:
     Matrix covariance;
     double effective; // share of the samples that count
   };
+  class Moments;
+  class Uniform;
   Posterior posterior();
-  Posterior sampled(const Posterior &from, int samples, double temperature);
+  Posterior weighed(const Posterior &bell);
+  Posterior sliced(const Posterior &bell);
+  Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);
+  double slice(const Vector &axis, double width, double level, Vector &x, double &here, Uniform &uniform);
+  void judgeResiduals();
   vpDutySlice slice(double atDuty);
 
   //! Whether few lines make a pattern that repeats over the whole profile: its edges pass from line to line
@@ -142,6 +147,13 @@ private:
       return true;
     }
   }
+  //! Whether keepPossible() would leave it as it is.
+  bool isPossible(const Vector &x) const
+  {
+    Vector possible = x;
+    keepPossible(possible);
+    return possible == x;
+  }
   double pulses() const { return m_settings.twoPulse ? 2 : 1; } // of a period
   double leastOffset(double share) const;
   double unlikely(const Vector &x, double darkest) const;
@@ -152,10 +164,12 @@ private:
 
   const vpStripeProfile *m_profile;
   Settings m_settings;
-  int m_linear = 2;            // offset and envelope coefficients
-  double m_half = 1;           // s
-  double m_line = 0;           // s, mean distance of the lines
-  double m_startFrequency = 0; // Hz
+  int m_linear = 2;                       // offset and envelope coefficients
+  double m_half = 1;                      // s
+  double m_line = 0;                      // s, mean distance of the lines
+  double m_startFrequency = 0;            // Hz
+  double m_logExposureSigma;              // prior of the exposure's logarithm
+  double m_leastExposure, m_mostExposure; // s
   bool m_freeExposure = true;
   bool m_freeDuty = true;
   double m_darkness = 0; // 1 / variance of the offset about 0

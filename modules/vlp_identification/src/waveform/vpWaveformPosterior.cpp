@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "vpDutyRidge.h"
@@ -42,7 +44,54 @@ double normalQuantile(double p)
 }
 } // namespace
 
-void vpWaveformFit::integrate()
+//! Mean and covariance of weighted samples.
+class vpWaveformFit::Moments
+{
+public:
+  //! \param about Some place near them.
+  explicit Moments(const Vector &about) : m_about(about) {}
+
+  void add(const Vector &x, double weight, double cost)
+  {
+    if (cost < m_leastCost) {
+      m_leastCost = cost;
+      m_likeliest = x;
+    }
+    const Vector apart = x - m_about;
+    m_sum += weight;
+    m_squares += weight * weight;
+    m_first += weight * apart;
+    m_second += weight * apart * apart.transpose();
+  }
+  Vector mean() const { return m_about + m_first / m_sum; }
+  Matrix covariance() const
+  {
+    const Vector first = m_first / m_sum;
+    return m_second / m_sum - first * first.transpose();
+  }
+  const Vector &likeliest() const { return m_likeliest; }
+  double leastCost() const { return m_leastCost; }
+  //! How many samples of equal weight would say as much (Kong 1992).
+  double effective() const { return m_sum * m_sum / m_squares; }
+
+private:
+  Vector m_about, m_first = Vector::Zero(), m_likeliest = Vector::Zero();
+  Matrix m_second = Matrix::Zero();
+  double m_sum = 0, m_squares = 0, m_leastCost = std::numeric_limits<double>::infinity();
+};
+
+//! Numbers between 0 and 1, the same each time.
+class vpWaveformFit::Uniform
+{
+public:
+  double operator()() { return (static_cast<double>(m_generator()) - 0.5) / 2147483646.; }
+
+private:
+  std::minstd_rand m_generator{1};
+};
+
+//! How much more than their noise says the lines are off, by what the model leaves out.
+void vpWaveformFit::judgeResiduals()
 {
   // What the model leaves out is alike on neighbouring lines: they say less together than each says alone.
   const Eigen::ArrayXd scaled = m_weight.sqrt() * residuals();
@@ -53,7 +102,11 @@ void vpWaveformFit::integrate()
   // A variance told from few residuals may be any.
   const double degrees = degreesOfFreedom();
   m_inflation = std::max(1.0, together * m_chiSquare / degrees) * (1 + 6 / (degrees * degrees));
+}
 
+void vpWaveformFit::integrate()
+{
+  judgeResiduals();
   const Posterior found = posterior();
   m_x = found.mean;
   settle();
@@ -79,28 +132,20 @@ vpWaveformFit::Posterior vpWaveformFit::posterior()
   reach(exposure) = std::max(m_settings.exposureTolerance * m_profile->exposure,
                              std::abs(m_x(exposure) - m_profile->exposure));
   const Matrix wide = reach.cwiseAbs2().cwiseInverse().asDiagonal();
+  const Posterior bell{m_x, (m_curvature / m_inflation + wide).inverse(), 0};
   static const double gap = 1.15; // exposures from line to line
-  Posterior posterior{m_x, (m_curvature / m_inflation + wide).inverse(), 0};
-  static const int few = 64, many = 128; // samples
-  static const double good = 0.4;        // share of them that count
-  if (m_line < gap * m_profile->exposure) {
-    // What moves few edges from line to line is as bell-shaped as the noise.
-    static const double sharp = 0.04; // lines: what one line alone leaves open of an edge in it
-    const double open = (m_weight * m_given.square()).inverse().mean() * m_inflation;
-    if (open < sharp * sharp && !repeats()) {
-      return posterior;
-    }
-    posterior = sampled(posterior, few, m_inflation);
+  if (m_line > gap * m_x(exposure)) {
+    return sliced(bell);
   }
-  if (posterior.effective < good) {
-    // Not bell-shaped, and the minimum may lie at a wall of it: from a flattened posterior down to itself.
-    posterior = {m_x, (m_curvature / (32 * m_inflation) + wide).inverse(), 0};
-    for (double temperature : {32.0, 8.0, 3.0}) {
-      posterior = sampled(posterior, many, m_inflation * temperature);
-    }
-    posterior = sampled(posterior, 3 * many, m_inflation); // few of which count: it is the smaller one
+  // What moves few edges from line to line is as bell-shaped as the noise.
+  static const double sharp = 0.04; // lines: what one line alone leaves open of an edge in it
+  const double open = (m_weight * m_given.square()).inverse().mean() * m_inflation;
+  if (open < sharp * sharp && !repeats()) {
+    return bell;
   }
-  return posterior;
+  static const double good = 0.4; // share of the samples that count
+  const Posterior nearly = weighed(bell);
+  return nearly.effective > good ? nearly : sliced(bell);
 }
 
 bool vpWaveformFit::hidesDuty() const
@@ -192,18 +237,17 @@ double vpWaveformFit::frequencyNoise() const
 }
 
 /*!
-  Mean and covariance of exp(-cost / (2 \e temperature)), by samples from a normal distribution wider than \e
-  from, each weighted by how much it was drawn too often.
+  Mean and covariance of exp(-cost / (2 inflation)), by samples from a normal distribution wider than \e bell,
+  each weighted by how much it was drawn too often.
 */
-vpWaveformFit::Posterior vpWaveformFit::sampled(const Posterior &from, int samples, double temperature)
+vpWaveformFit::Posterior vpWaveformFit::weighed(const Posterior &bell)
 {
+  static const int samples = 64;
   static const double wider = 1.8; // variance of the samples
-  const Eigen::LLT<Matrix> root(wider * from.covariance);
-  if (root.info() != Eigen::Success) {
-    return from;
-  }
+  const Eigen::LLT<Matrix> root(wider * bell.covariance);
   std::vector<Vector> places;
-  std::vector<double> logs;
+  std::vector<double> costs, logs;
+  double most = -std::numeric_limits<double>::infinity();
   for (int k = 0; k < samples; ++k) {
     // Kronecker sequence of the generalised golden ratio in five dimensions (Roberts 2018): even, and the
     // same each time.
@@ -215,36 +259,102 @@ vpWaveformFit::Posterior vpWaveformFit::sampled(const Posterior &from, int sampl
       const double turn = 0.5 + (k + 1) * power;
       normal(p) = isFree(p) ? normalQuantile(std::clamp(turn - std::floor(turn), 1e-6, 1 - 1e-6)) : 0;
     }
-    const Vector x = from.mean + root.matrixL() * normal;
-    Vector possible = x;
-    keepPossible(possible);
-    if (possible == x) {
+    const Vector x = bell.mean + root.matrixL() * normal;
+    if (isPossible(x)) {
       places.push_back(x);
-      logs.push_back(-0.5 * cost(x) / temperature + 0.5 * normal.squaredNorm());
+      costs.push_back(cost(x));
+      logs.push_back(-0.5 * costs.back() / m_inflation + 0.5 * normal.squaredNorm());
+      most = std::max(most, logs.back());
     }
   }
   if (places.empty()) {
-    return from;
+    return bell;
   }
-  const double most = *std::max_element(logs.begin(), logs.end());
-  double sum = 0, squares = 0;
-  Vector first = Vector::Zero();
-  Matrix second = Matrix::Zero();
+  Moments moments(bell.mean);
   for (size_t k = 0; k < places.size(); ++k) {
-    const double weight = std::exp(logs[k] - most);
-    const Vector apart = places[k] - from.mean;
-    sum += weight;
-    squares += weight * weight;
-    first += weight * apart;
-    second += weight * apart * apart.transpose();
+    moments.add(places[k], std::exp(logs[k] - most), costs[k]);
   }
-  first /= sum;
-  Posterior posterior{from.mean + first, second / sum - first * first.transpose(),
-                      sum * sum / squares / samples};
-  // Few samples that count make a narrow cloud out of any.
-  const double counted = std::max(1.0, sum * sum / squares);
-  posterior.covariance += from.covariance / (1 + std::pow(counted / 4, 4));
-  return posterior;
+  return {moments.mean(), moments.covariance(), moments.effective() / samples};
+}
+
+/*!
+  The same by slice sampling (Neal 2003) from the minimum, which needs no shape to be right: first hot, which
+  finds a deeper minimum where walls hide it and tells the axes of the shape; then as it is.
+*/
+vpWaveformFit::Posterior vpWaveformFit::sliced(const Posterior &bell)
+{
+  static const int hotSweeps = 10, sweeps = 40;
+  static const double hot = 32; // temperature
+  Uniform uniform;
+  const Moments first = sweep(bell.covariance, hotSweeps, hot, uniform);
+  if (first.leastCost() < m_cost) {
+    m_x = first.likeliest();
+    descend(hotSweeps);
+    judgeResiduals();
+  }
+  const Moments all = sweep(first.covariance(), sweeps, 1, uniform);
+  return {all.mean(), all.covariance(), 1};
+}
+
+//! Samples of exp(-cost / (2 inflation temperature)) from m_x on, along the axes of a covariance.
+vpWaveformFit::Moments vpWaveformFit::sweep(const Matrix &covariance, int sweeps, double temperature,
+                                            Uniform &uniform)
+{
+  // Axes of the correlations: the parameters have units of their own.
+  Vector scale = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  for (int p = 0; p < parameters; ++p) {
+    scale(p) = isFree(p) ? std::max(scale(p), 1e-9 * std::abs(m_x(p))) : 0;
+  }
+  const Vector perScale = scale.unaryExpr([](double s) { return s > 0 ? 1 / s : 0; });
+  const Eigen::SelfAdjointEigenSolver<Matrix> shape(perScale.asDiagonal() * covariance *
+                                                    perScale.asDiagonal());
+  const Matrix axes =
+      scale.asDiagonal() * shape.eigenvectors() * shape.eigenvalues().cwiseMax(1e-9).cwiseSqrt().asDiagonal();
+  Vector x = m_x, width = Vector::Constant(2 * std::sqrt(temperature));
+  double here = cost(x);
+  Moments moments(x);
+  for (int k = 0; k < sweeps * parameters; ++k) {
+    const int which = k % parameters;
+    const Vector axis = axes.col(which);
+    if (!axis.isZero(0)) {
+      width(which) = slice(axis, width(which), here - 2 * m_inflation * temperature * std::log(uniform()), x,
+                           here, uniform);
+      moments.add(x, 1, here);
+    }
+  }
+  return moments;
+}
+
+/*!
+  One step of slice sampling: moves \e x, whose cost is \e here, along \e axis to where the cost is below \e
+  level. \return Length of the stretch that it was drawn from, a good one to begin with next time.
+*/
+double vpWaveformFit::slice(const Vector &axis, double width, double level, Vector &x, double &here,
+                            Uniform &uniform)
+{
+  auto costAt = [&](double step) {
+    const Vector there = x + step * axis;
+    return isPossible(there) ? cost(there) : std::numeric_limits<double>::infinity();
+  };
+  static const int mostWidths = 6;
+  double from = -width * uniform(), to = from + width;
+  for (int k = 0; k < mostWidths && costAt(from) < level; ++k) {
+    from -= width;
+  }
+  for (int k = 0; k < mostWidths && costAt(to) < level; ++k) {
+    to += width;
+  }
+  static const int mostDraws = 12;
+  for (int k = 0; k < mostDraws; ++k) {
+    const double step = from + (to - from) * uniform(), there = costAt(step);
+    if (there < level) {
+      x += step * axis;
+      here = there;
+      break;
+    }
+    (step < 0 ? from : to) = step;
+  }
+  return to - from;
 }
 
 /*!
@@ -253,7 +363,7 @@ vpWaveformFit::Posterior vpWaveformFit::sampled(const Posterior &from, int sampl
 */
 double vpWaveformFit::unlikely(const Vector &x, double darkest) const
 {
-  return vpStripeLimits::unlikely(x(exposure) / m_profile->exposure, x(duty)) +
+  return vpStripeLimits::unlikely(x(exposure) / m_profile->exposure, m_profile->logExposureSigma, x(duty)) +
          m_darkness * darkest * darkest;
 }
 
@@ -268,9 +378,9 @@ std::vector<vpWaveformFit::LookAlike> vpWaveformFit::lookAlikes() const
   std::vector<LookAlike> found;
   auto add = [&](double otherPulse, double otherExposure, double offset) {
     static const double wholePeriod = 0.98;
-    const double stated = otherExposure / (m_profile->exposure * m_x(frequency));
+    const double exposed = otherExposure / m_x(frequency);
     const bool possible = otherPulse * pulses() <= wholePeriod && otherPulse > 1 - wholePeriod &&
-                          stated > leastExposure && stated < mostExposure &&
+                          exposed > m_leastExposure && exposed < m_mostExposure &&
                           offset >= leastOffset(m_coefficient[1]);
     if (possible) {
       LookAlike other{m_x, 0};

@@ -5,6 +5,7 @@
 #ifndef vpRollingShutter_h
 #define vpRollingShutter_h
 
+#include <cmath>
 #include <vector>
 
 #include <visp3/core/vpCameraParameters.h>
@@ -17,10 +18,14 @@ BEGIN_VISP_NAMESPACE
 struct VISP_EXPORT vpRollingShutter {
   enum class Readout { rows, rowsReversed, columns, columnsReversed };
 
-  double rowTime = 0;      // s from the start of one sensor line to that of the next
-  double rowTimeSigma = 0; // s, standard deviation of rowTime
-  double exposure = 0;     // s, of each line
+  double rowTime = 0;       // s from the start of one sensor line to that of the next
+  double rowTimeSigma = 0;  // s, standard deviation of rowTime
+  double exposure = 0;      // s, of each line
+  double exposureSigma = 0; // s, how far it may be off: a share r of it is a factor of 1 + r
   Readout readout = Readout::rows;
+
+  //! Standard deviation of the exposure's logarithm.
+  double logExposureSigma() const { return exposure > 0 ? std::log1p(exposureSigma / exposure) : 0; }
 
   bool alongColumns() const { return readout == Readout::columns || readout == Readout::columnsReversed; }
   bool reversed() const { return readout == Readout::rowsReversed || readout == Readout::columnsReversed; }
@@ -91,6 +96,9 @@ public:
   //! Exposure of one sensor line, s.
   double exposure() const { return m_exposure; }
 
+  //! Standard deviation of its logarithm.
+  double logExposureSigma() const { return m_logExposureSigma; }
+
   //! Further averaging by an area resize over s sensor lines: length of a box of the same variance,
   //! row time * sqrt(s^2 - 1), s; 0 where there is none.
   double averaging() const { return m_averaging; }
@@ -111,6 +119,7 @@ private:
   std::vector<double> m_samplePosition;
   bool m_aligned = true;
   double m_exposure = 0;
+  double m_logExposureSigma = 0;
   double m_lineTime = 0;
   double m_averaging = 0;
 };

@@ -41,6 +41,8 @@ struct VISP_EXPORT vpVlpRig {
 
   //! Where row_time_sigma_s is left out: an uncalibrated row time, this share of it.
   static constexpr double uncalibratedRowTime = 0.01;
+  //! The same of exposure_sigma_s: an exposure that may be off by a factor of two.
+  static constexpr double uncalibratedExposure = 1;
 
   /*!
     Reads a rig.yaml and the camera XML that it names (relative to the rig file).

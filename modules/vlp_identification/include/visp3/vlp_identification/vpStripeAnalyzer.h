@@ -16,11 +16,12 @@ BEGIN_VISP_NAMESPACE
 
 //! The light of one lamp, line by line.
 struct VISP_EXPORT vpStripeProfile {
-  std::vector<double> time;  // s, middle of each line's exposure, after the start of the frame
-  std::vector<double> light; // grey levels above the lamp's surroundings
-  std::vector<double> sigma; // grey levels, of light by pixel noise
-  double exposure = 0;       // s, of each line, averaging by a resize included
-  double agreement = 1;      // correlation, over the lines, of their left and right halves
+  std::vector<double> time;    // s, middle of each line's exposure, after the start of the frame
+  std::vector<double> light;   // grey levels above the lamp's surroundings
+  std::vector<double> sigma;   // grey levels, of light by pixel noise
+  double exposure = 0;         // s, of each line, averaging by a resize included
+  double logExposureSigma = 0; // standard deviation of its logarithm, as the rig states it
+  double agreement = 1;        // correlation, over the lines, of their left and right halves
 
   /*!
     Profile inside an outline (in samples and lines, as the fitter gives it). Of an ellipse, each line's light

@@ -125,6 +125,7 @@ private:
 
   std::vector<double> m_middle; // s, of each delivered line's exposure, ascending
   double m_lineTime = 0;
+  double m_logExposureSigma = 0;
   double m_exposure = 0;
   double m_relativeRowTime = 0; // standard deviation of the row time as a share of it
   double m_pixels = 0;          // px or py of the delivered picture, across the lines
