@@ -12,6 +12,7 @@
 
 #include "vpStripeStarts.h"
 #include "waveform/vpDutyRidge.h"
+#include "waveform/vpStripeLimits.h"
 #include "waveform/vpWaveformFit.h"
 #include "words/vpWordSearch.h"
 
@@ -36,7 +37,7 @@ int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &p
   return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
 }
 
-//! How bright the lamp is while it is lit, by these peaks of its profile, and what its stripes may then be.
+//! How bright the lamp is while it is lit, and what its stripes may then be.
 class Start
 {
 public:
@@ -45,13 +46,12 @@ public:
   std::vector<vpStripeStarts::Edge> edges;
   std::optional<vpStripeStarts::Pulses> pulses;
 
-  Start(const vpStripeProfile &profile, const std::vector<size_t> &peaks, const vpStripeAnalyzer &analyzer)
-      : m_profile(&profile)
+  Start(const vpStripeProfile &profile, std::vector<double> litEnvelope, int order, const vpStripeAnalyzer &analyzer)
+      : envelope(std::move(litEnvelope)), m_profile(&profile)
   {
     settings.modelError = analyzer.modelError;
     settings.exposureTolerance = analyzer.exposureTolerance;
-    settings.envelopeOrder = envelopeOrderOf(profile, peaks);
-    envelope = vpStripeStarts::envelope(profile, peaks, settings.envelopeOrder);
+    settings.envelopeOrder = order;
     edges = vpStripeStarts::edges(profile, envelope);
     pulses = vpStripeStarts::pulses(edges);
   }
@@ -265,9 +265,8 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
   static const double few = 2, fewMisfit = 0.03, enough = 3, enoughMisfit = 0.09, many = 5;
   const double share = std::clamp((periods - few) / (enough - few), 0.0, 1.0);
   const double most = periods > many ? 1 : fewMisfit + (enoughMisfit - fewMisfit) * share;
-  // Nor is what hardly ever shines, or hardly ever does not: a dim rim, a crossbar.
-  static const double leastDuty = 0.05;
-  const bool shines = std::min(features.duty, 1 - features.duty) > leastDuty;
+  static const double atTheEnd = 0.001;
+  const bool shines = std::min(features.duty, 1 - features.duty) > vpStripeLimits::leastDuty + atTheEnd;
   if (!shines || periods < leastPeriods || (periods < manyPeriods && !edgesAgree) ||
       profile.time.size() < leastLines || features.misfit > most) {
     features.frequencySigma = std::max(features.frequencySigma, features.frequency);
@@ -296,23 +295,24 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   features.stripes = static_cast<unsigned int>(peaks.size());
   features.modulation = depthOf(profile);
 
-  Start byAll(profile, peaks, *this);
+  const int order = envelopeOrderOf(profile, peaks);
+  Start byAll(profile, vpStripeStarts::envelope(profile, peaks, order), order, *this);
   if (features.modulation < minModulation || profile.agreement < minAgreement ||
       !byAll.significant(minSignificance)) {
     return features;
   }
   features.misfit = 1; // where no pulses explain anything
   Start *start = &byAll;
-  std::optional<Start> byWhole;
+  std::optional<Start> byPeriod;
   std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
-  // A stripe at the lamp's end is dim because the lamp is, or because it is not whole.
-  const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
-  if (whole.size() < peaks.size()) {
-    byWhole.emplace(profile, whole, *this);
-    std::optional<vpWaveformFit> other = fitPwm(profile, *byWhole);
+  if ((!pwm || pwm->misfit() > allExplained) && !byAll.candidates().empty()) {
+    // An emitter of any pattern is as bright as the brightest that a period shows.
+    byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, byAll.candidates().front().frequency), order,
+                     *this);
+    std::optional<vpWaveformFit> other = fitPwm(profile, *byPeriod);
     if (other && (!pwm || other->cost() < pwm->cost())) {
       pwm = std::move(other);
-      start = &*byWhole;
+      start = &*byPeriod;
     }
   }
   if (pwm) {

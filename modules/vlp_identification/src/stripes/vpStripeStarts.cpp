@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -83,18 +84,15 @@ std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
   return peaks;
 }
 
-std::vector<size_t> vpStripeStarts::wholePeaks(const vpStripeProfile &profile,
-                                               const std::vector<size_t> &peaks)
+std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, std::vector<size_t> peaks, int order)
 {
-  std::vector<size_t> whole;
-  std::copy_if(peaks.begin(), peaks.end(), std::back_inserter(whole),
-               [&profile](size_t peak) { return peak != 0 && peak + 1 != profile.light.size(); });
-  return whole.empty() ? peaks : whole;
-}
-
-std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks,
-                                             int order)
-{
+  // A stripe that is brightest on the profile's first or last line may be the end of one whose rest is not seen.
+  if (peaks.size() > 1 && peaks.back() + 1 == profile.light.size()) {
+    peaks.pop_back();
+  }
+  if (peaks.size() > 1 && peaks.front() == 0) {
+    peaks.erase(peaks.begin());
+  }
   if (peaks.empty()) {
     const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
     return std::vector<double>(profile.light.size(), std::max(1.0, brightest));
@@ -139,6 +137,30 @@ std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, con
     envelope.push_back(std::exp(std::clamp(log, -20.0, 20.0)));
   }
   return envelope;
+}
+
+std::vector<double> vpStripeStarts::envelopeOfPeriod(const vpStripeProfile &profile, double frequency)
+{
+  const size_t n = profile.light.size();
+  const double line = std::abs(profile.time.back() - profile.time.front()) / static_cast<double>(std::max<size_t>(1, n - 1));
+  const auto half = static_cast<size_t>(std::clamp(std::round(0.5 / (frequency * line)), 1.0, static_cast<double>(n)));
+  const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
+  static const double least = 1e-3; // of the brightest line: dark lines beyond the lamp have no logarithm
+  std::vector<double> most(n), smooth(n);
+  auto around = [&](size_t i) { return std::make_pair(i - std::min(i, half), std::min(n, i + half + 1)); };
+  for (size_t i = 0; i < n; ++i) {
+    const auto [first, last] = around(i);
+    const auto begin = profile.light.begin();
+    most[i] = std::log(std::max(*std::max_element(begin + static_cast<long>(first), begin + static_cast<long>(last)),
+                                least * brightest));
+  }
+  for (size_t i = 0; i < n; ++i) {
+    const auto [first, last] = around(i);
+    const auto begin = most.begin();
+    smooth[i] = std::exp(std::accumulate(begin + static_cast<long>(first), begin + static_cast<long>(last), 0.0) /
+                         static_cast<double>(last - first));
+  }
+  return smooth;
 }
 
 std::vector<vpStripeStarts::Edge> vpStripeStarts::edges(const vpStripeProfile &profile,

@@ -24,6 +24,9 @@ namespace vpStripeLimits
 */
 constexpr double untrue = 0.02;
 
+//! Lit and dark share of a period of any lamp: less is a dim rim, a crossbar.
+constexpr double leastDuty = 0.05;
+
 /*!
   Pulse and exposure are both boxes, and which is which the stripes do not say: how far an exposure and a
   pulse are from what they should be, a chi-square. \param exposure As a share of the stated one. \param sigma
@@ -33,9 +36,8 @@ inline double unlikely(double exposure, double sigma, double duty)
 {
   const double softened = 0.15;  // of the exposure's logarithm, by tone curves and blur
   const double spread = 0.3;     // of a duty that may be any
-  const double least = 0.05;     // of lit and of dark share: no lamp map has less
-  const double impossible = 100; // chi-square
-  const double outside = std::min(duty, 1 - duty) < least ? impossible : 0;
+  const double impossible = 100;     // chi-square
+  const double outside = std::min(duty, 1 - duty) < leastDuty ? impossible : 0;
   return std::pow(std::log(exposure) / std::hypot(softened, sigma), 2) + std::pow((duty - 0.5) / spread, 2) +
          outside;
 }

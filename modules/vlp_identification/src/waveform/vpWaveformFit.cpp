@@ -134,7 +134,7 @@ void vpWaveformFit::keepPossible(Vector &x) const
   const double reach = 0.4 / m_half;
   x(frequency) =
       std::max(std::clamp(x(frequency), m_startFrequency - reach, m_startFrequency + reach), 0.1 / m_half);
-  x(duty) = std::clamp(x(duty), 0.02, 0.98);
+  x(duty) = std::clamp(x(duty), vpStripeLimits::leastDuty, 1 - vpStripeLimits::leastDuty);
   if (m_freeExposure) {
     x(exposure) = std::clamp(x(exposure), m_leastExposure, m_mostExposure);
   }
