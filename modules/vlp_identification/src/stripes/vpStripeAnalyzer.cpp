@@ -46,7 +46,8 @@ public:
   std::vector<vpStripeStarts::Edge> edges;
   std::optional<vpStripeStarts::Pulses> pulses;
 
-  Start(const vpStripeProfile &profile, std::vector<double> litEnvelope, int order, const vpStripeAnalyzer &analyzer)
+  Start(const vpStripeProfile &profile, std::vector<double> litEnvelope, int order,
+        const vpStripeAnalyzer &analyzer)
       : envelope(std::move(litEnvelope)), m_profile(&profile)
   {
     settings.modelError = analyzer.modelError;
@@ -307,12 +308,23 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
   if ((!pwm || pwm->misfit() > allExplained) && !byAll.candidates().empty()) {
     // An emitter of any pattern is as bright as the brightest that a period shows.
-    byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, byAll.candidates().front().frequency), order,
-                     *this);
+    byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, byAll.candidates().front().frequency),
+                     order, *this);
     std::optional<vpWaveformFit> other = fitPwm(profile, *byPeriod);
     if (other && (!pwm || other->cost() < pwm->cost())) {
       pwm = std::move(other);
       start = &*byPeriod;
+    }
+  }
+  static const size_t manyLines = 40; // that such a wave cannot follow by chance
+  if (pwm && pwm->misfit() > allExplained && profile.light.size() >= manyLines) { // a camera that sharpens
+    start->settings.sharpened = true;
+    std::optional<vpWaveformFit> other = fitPwm(profile, *start);
+    static const double clearly = 0.5;
+    if (other && other->misfit() < clearly * pwm->misfit()) {
+      pwm = std::move(other);
+    } else {
+      start->settings.sharpened = false;
     }
   }
   if (pwm) {

@@ -18,7 +18,8 @@ BEGIN_VISP_NAMESPACE
 vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
                              const std::vector<double> &envelope)
     : m_profile(&profile), m_settings(settings),
-      m_linear(2 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2))
+      m_bends(1 + std::clamp(settings.envelopeOrder, 0, mostLinear - 3)),
+      m_linear(1 + m_bends + (settings.sharpened ? 1 : 0))
 {
   const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
   const auto n = static_cast<Eigen::Index>(profile.light.size());
@@ -48,7 +49,7 @@ vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &set
 //! What of the normal equations of offset and envelope does not depend on the wave.
 void vpWaveformFit::prepareSums()
 {
-  const Eigen::Index bends = m_linear - 1;
+  const Eigen::Index bends = m_bends;
   m_powers.resize(m_time.size(), bends);
   m_ofWave.resize(m_time.size(), 2 * bends);
   m_ofSquare.resize(m_time.size(), 2 * bends - 1);
@@ -150,7 +151,7 @@ double vpWaveformFit::cost(const Vector &x)
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, mostLinear, 1>;
   evaluateValue(x);
   m_square = m_value.square();
-  const Eigen::Index bends = m_linear - 1, lines = m_time.size();
+  const Eigen::Index bends = m_bends, lines = m_time.size();
   std::array<double, 2 * mostLinear> ofWave, ofSquare;
   vpColumnProducts(m_ofWave.data(), lines, m_ofWave.cols(), m_value.data(), ofWave.data());
   vpColumnProducts(m_ofSquare.data(), lines, m_ofSquare.cols(), m_square.data(), ofSquare.data());
@@ -167,9 +168,21 @@ double vpWaveformFit::cost(const Vector &x)
       A(p - k + 1, k + 1) = ofSquare[static_cast<size_t>(p)];
     }
   }
+  if (m_settings.sharpened) {
+    const Eigen::Index last = m_linear - 1;
+    evaluateOvershoot(m_value);
+    m_column = m_weight * m_overshoot;
+    A(last, 0) = m_column.sum();
+    A(last, last) = (m_column * m_overshoot).sum();
+    b(last) = (m_column * m_light).sum();
+    m_column *= m_value;
+    for (Eigen::Index k = 0; k < bends; ++k) {
+      A(last, k + 1) = m_powers.col(k).matrix().dot(m_column.matrix());
+    }
+  }
   A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
   A(0, 0) += m_darkness;
-  for (int k = 2; k < m_linear; ++k) {
+  for (int k = 2; k <= m_bends; ++k) {
     A(k, k) += 0.06; // bends of four times the envelope are one standard deviation
   }
   A.triangularView<Eigen::StrictlyUpper>() = A.transpose();
@@ -195,6 +208,21 @@ double vpWaveformFit::cost(const Vector &x)
   return sum;
 }
 
+/*!
+  What sharpening adds to lit lines beside darker ones, grey levels for each unit of its strength. Dark lines
+  it would make darker, but there is no darker.
+*/
+void vpWaveformFit::evaluateOvershoot(const Eigen::ArrayXd &value)
+{
+  const Eigen::Index n = value.size();
+  m_overshoot = 2 * value;
+  m_overshoot.head(n - 1) -= value.tail(n - 1);
+  m_overshoot.tail(n - 1) -= value.head(n - 1);
+  m_overshoot(0) -= value(0);
+  m_overshoot(n - 1) -= value(n - 1);
+  m_overshoot = m_given * value * m_overshoot.max(0);
+}
+
 void vpWaveformFit::settle()
 {
   m_cost = cost(m_x);
@@ -206,11 +234,16 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
 {
   // Columns: the nonlinear parameters, the offset, the envelope's coefficients.
   constexpr int most = parameters + mostLinear;
-  const Eigen::Index bends = m_linear - 1, all = parameters + m_linear;
+  const Eigen::Index bends = m_bends, all = parameters + m_linear;
   m_jacobian.resize(m_time.size(), all);
   const Eigen::ArrayXd light = envelope();
   evaluateWave(m_x, m_time, m_wave, m_second);
   m_residual = m_light - m_coefficient[0] - light * m_wave.value;
+  if (m_settings.sharpened) {
+    evaluateOvershoot(m_wave.value);
+    m_residual -= m_coefficient[static_cast<size_t>(m_linear) - 1] * m_overshoot;
+    m_jacobian.col(all - 1) = m_overshoot;
+  }
   m_jacobian.col(phase) = light * m_wave.byTurn;
   m_jacobian.col(exposure) = light * m_wave.byWidth;
   m_jacobian.col(frequency) =
@@ -263,7 +296,7 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
   }
   keepPossible(m_x);
   descend(60);
-  for (int round = 0; round < 2 && m_linear > 2 && bendEnvelope(); ++round) {
+  for (int round = 0; round < 2 && m_bends > 1 && bendEnvelope(); ++round) {
     descend(20);
   }
   return m_x.allFinite() && m_cost < 1e299;
@@ -295,7 +328,7 @@ double vpWaveformFit::leastOffset(double share) const
 //! At each line, as it was fitted, grey levels.
 Eigen::ArrayXd vpWaveformFit::envelope() const
 {
-  return (m_powers * Eigen::Map<const Eigen::VectorXd>(m_coefficient.data() + 1, m_linear - 1)).array();
+  return (m_powers * Eigen::Map<const Eigen::VectorXd>(m_coefficient.data() + 1, m_bends)).array();
 }
 
 bool vpWaveformFit::hollow() const
@@ -317,10 +350,11 @@ bool vpWaveformFit::hollow() const
   return false;
 }
 
-//! Grey levels, at each line.
+//! Grey levels, at each line. After settle().
 Eigen::ArrayXd vpWaveformFit::residuals() const
 {
-  return m_light - m_coefficient[0] - envelope() * m_wave.value;
+  const Eigen::ArrayXd left = m_light - m_coefficient[0] - envelope() * m_wave.value;
+  return m_settings.sharpened ? left - m_coefficient[static_cast<size_t>(m_linear) - 1] * m_overshoot : left;
 }
 
 //! Levenberg and Marquardt's method from m_x.

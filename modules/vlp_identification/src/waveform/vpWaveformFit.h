@@ -36,6 +36,7 @@ public:
   struct Settings {
     int envelopeOrder = 0; // up to 4
     bool twoPulse = false;
+    bool sharpened = false; // the camera makes lit lines beside dark ones brighter
     double modelError = 0.03;
     double exposureTolerance = 0.02;
   };
@@ -92,7 +93,7 @@ public:
   double misfit() const;
 
 private:
-  static constexpr int mostLinear = 6;
+  static constexpr int mostLinear = 7;
 
   struct Prior {
     double chiSquare = 0, weight = 0, mean = 0;
@@ -125,6 +126,7 @@ private:
   void evaluateWave(const Vector &x, const Eigen::ArrayXd &time, vpPulseWave &wave,
                     vpPulseWave &second) const;
   void evaluateValue(const Vector &x);
+  void evaluateOvershoot(const Eigen::ArrayXd &value);
   //! Cost where offset and envelope fit best. Fills m_coefficient.
   double cost(const Vector &x);
   //! At m_x, with all that goes with it.
@@ -164,7 +166,8 @@ private:
 
   const vpStripeProfile *m_profile;
   Settings m_settings;
-  int m_linear = 2;                       // offset and envelope coefficients
+  int m_bends = 1;                        // envelope coefficients
+  int m_linear = 2;                       // offset, envelope and overshoot coefficients
   double m_half = 1;                      // s
   double m_line = 0;                      // s, mean distance of the lines
   double m_startFrequency = 0;            // Hz
@@ -191,7 +194,7 @@ private:
   vpPulseWave m_wave, m_second;
   std::array<double, mostLinear> m_coefficient{}; // the linear parameters of the latest cost()
   // Kept from step to step for their memory.
-  Eigen::ArrayXd m_value, m_square, m_column, m_residual;
+  Eigen::ArrayXd m_value, m_square, m_column, m_residual, m_overshoot;
   Eigen::MatrixXd m_jacobian;
 };
 
