@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <visp3/vlp_identification/vpStripeAnalyzer.h>
 
+#include "vpPulsePosterior.h"
 #include "vpPulseWave.h"
 
 BEGIN_VISP_NAMESPACE
@@ -112,6 +113,9 @@ private:
   Posterior posterior();
   Posterior weighed(const Posterior &bell);
   Posterior sliced(const Posterior &bell);
+  Posterior onGrid(const Posterior &bell);
+  std::vector<double> likelyExposures(const Posterior &bell) const;
+  vpPulsePosterior::Moments momentsAt(double exposed) const;
   Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);
   double slice(const Vector &axis, double width, double level, Vector &x, double &here, Uniform &uniform);
   void judgeResiduals();

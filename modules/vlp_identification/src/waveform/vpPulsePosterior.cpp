@@ -1,0 +1,233 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpPulsePosterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vpStripeLimits.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const double beyond = 1.2; // halves of the profile, to where the middles of its pulses are
+
+//! Places along one axis of the grid: from -reach to +reach about the middle.
+struct Axis {
+  int count;
+  double middle, reach;
+
+  double step() const { return count > 1 ? 2 * reach / (count - 1) : 0; }
+  double at(int i) const { return count > 1 ? middle - reach + i * step() : middle; }
+  //! The same over places \e first to \e last and a step beyond.
+  void narrow(int first, int last)
+  {
+    if (count == 1) {
+      return;
+    }
+    const double from = at(first) - step(), to = at(last) + step();
+    middle = 0.5 * (from + to);
+    reach = 0.5 * (to - from);
+  }
+};
+} // namespace
+
+//! The grid. Frequencies are those by which the first and the last line move, in seconds; phases are delays of all
+//! pulses, s; lengths are of a pulse, s.
+struct vpPulsePosterior::Range {
+  Axis frequency, delay, length;
+  double half = 0; // s, of the profile
+};
+
+//! One pulse, tabled by its delay.
+struct vpPulsePosterior::Pulse {
+  double middle;           // s, at the start
+  Eigen::Index first, end; // lines that it may light
+  Eigen::ArrayXf shares, products, squares;
+};
+
+vpPulsePosterior::vpPulsePosterior(const Lines &lines, const Eigen::Vector3d &start)
+    : m_lines(lines), m_frequency(start(0)), m_inverted(start(2) > 0.5)
+{
+  const Eigen::ArrayXf above = lines.light - static_cast<float>(lines.dark);
+  m_weights = lines.weight.sum();
+  m_lights = (lines.weight * above).sum();
+  m_squares = (lines.weight * above.square()).sum();
+  const double lit = m_inverted ? 0.5 * (1 + start(2)) : 0.5 * start(2); // periods, to the pulse's middle
+  const double shift = lit - start(1), first = lines.time(0), last = lines.time(lines.time.size() - 1);
+  const bool backwards = last < first;
+  const double from = std::min(first, last), to = std::max(first, last), period = 1 / m_frequency;
+  Eigen::Index next = backwards ? lines.time.size() : 0;
+  for (double k = std::ceil(from * m_frequency - shift - 0.5); (k + shift - 0.5) * period <= to; ++k) {
+    Pulse pulse{(k + shift) * period, next, next, {}, {}, {}};
+    const auto end = static_cast<float>(pulse.middle + 0.5 * period);
+    if (backwards) {
+      while (pulse.first > 0 && lines.time(pulse.first - 1) < end) {
+        --pulse.first;
+      }
+      next = pulse.first;
+    } else {
+      while (pulse.end < lines.time.size() && lines.time(pulse.end) < end) {
+        ++pulse.end;
+      }
+      next = pulse.end;
+    }
+    if (pulse.end > pulse.first) {
+      m_pulses.push_back(std::move(pulse));
+    }
+  }
+}
+
+//! All pulses of one length at all delays that the grid asks for.
+void vpPulsePosterior::tabulate(const Range &range, double length)
+{
+  const double step = range.delay.step(), exposure = m_lines.exposure;
+  const double farthest =
+      range.delay.reach + beyond * (std::abs(range.frequency.middle) + range.frequency.reach) + 2 * step;
+  const auto count = static_cast<Eigen::Index>(2 * std::ceil(farthest / step) + 1);
+  const Eigen::ArrayXf delay = Eigen::ArrayXf::LinSpaced(count, static_cast<float>(-(count - 1) * 0.5 * step),
+                                                         static_cast<float>((count - 1) * 0.5 * step)) +
+                               static_cast<float>(range.delay.middle);
+  const auto half = static_cast<float>(0.5 * length), reach = static_cast<float>(0.5 * exposure),
+             perExposure = static_cast<float>(1 / exposure), dark = static_cast<float>(m_lines.dark);
+  Eigen::ArrayXf share;
+  for (Pulse &pulse : m_pulses) {
+    pulse.shares.setZero(count);
+    pulse.products.setZero(count);
+    pulse.squares.setZero(count);
+    for (Eigen::Index i = pulse.first; i < pulse.end; ++i) {
+      const float lit = m_lines.lit(i), weight = m_lines.weight(i), above = m_lines.light(i) - dark,
+                  from = m_lines.time(i) - static_cast<float>(pulse.middle);
+      share = ((from - delay + reach).min(half) - (from - delay - reach).max(-half)).max(0) * perExposure;
+      if (m_inverted) {
+        share = 1 - share;
+      }
+      pulse.shares += weight * lit * share;
+      pulse.products += weight * lit * above * share;
+      pulse.squares += weight * lit * lit * share.square();
+    }
+  }
+}
+
+//! Sums over all pulses at all delays of the grid, at one frequency: the delay of the last line by it, s.
+void vpPulsePosterior::addPulses(const Range &range, double ofFrequency)
+{
+  const Eigen::Index n = range.delay.count;
+  m_shares.setZero(n);
+  m_products.setZero(n);
+  m_shareSquares.setZero(n);
+  const double step = range.delay.step();
+  for (const Pulse &pulse : m_pulses) {
+    const double middle = 0.5 * static_cast<double>(pulse.shares.size() - 1) - 0.5 * static_cast<double>(n - 1),
+                 at = middle + std::clamp(pulse.middle / range.half, -beyond, beyond) * ofFrequency / step;
+    const auto first = static_cast<Eigen::Index>(
+        std::clamp(std::floor(at), 0.0, static_cast<double>(pulse.shares.size() - n - 1)));
+    const auto part = static_cast<float>(at - static_cast<double>(first));
+    auto between = [&](const Eigen::ArrayXf &table) {
+      return (1 - part) * table.segment(first, n) + part * table.segment(first + 1, n);
+    };
+    m_shares += between(pulse.shares);
+    m_products += between(pulse.products);
+    m_shareSquares += between(pulse.squares);
+  }
+}
+
+//! Chi-square of each place, offset and amplitude at their best.
+void vpPulsePosterior::evaluate(const Range &range)
+{
+  const Axis &lengths = range.length, &frequencies = range.frequency;
+  m_chiSquares.resize(static_cast<size_t>(lengths.count * frequencies.count * range.delay.count));
+  float *out = m_chiSquares.data();
+  static const double amplitude = 0.3; // of the amplitude, as a share of it, standard deviation
+  const auto ofAmplitude = static_cast<float>(1 / (amplitude * amplitude)),
+             ofOffset = static_cast<float>(m_weights + m_lines.darkness),
+             lights = static_cast<float>(m_lights - m_lines.darkness * m_lines.dark),
+             squares = static_cast<float>(m_squares + m_lines.darkness * m_lines.dark * m_lines.dark) + ofAmplitude;
+  for (int k = 0; k < lengths.count; ++k) {
+    tabulate(range, lengths.at(k));
+    for (int i = 0; i < frequencies.count; ++i, out += range.delay.count) {
+      addPulses(range, frequencies.at(i));
+      Eigen::Map<Eigen::ArrayXf> chiSquare(out, range.delay.count);
+      const auto second = m_products + ofAmplitude, ofSecond = m_shareSquares + ofAmplitude;
+      chiSquare = squares - (lights * lights * ofSecond - 2 * lights * m_shares * second + ofOffset * second.square()) /
+                                (ofOffset * ofSecond - m_shares.square()).max(1e-12f);
+    }
+  }
+}
+
+vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eigen::Vector3d &start, bool freeDuty,
+                                                  double inflation)
+{
+  vpPulsePosterior posterior(lines, start);
+  const double period = 1 / start(0), half = 0.5 * std::abs(lines.time(lines.time.size() - 1) - lines.time(0));
+  const double dutyStart = posterior.m_inverted ? 1 - start(2) : start(2);
+  const double shortest = vpStripeLimits::leastDuty * period;
+  Range range{{15, 0, lines.step}, {25, 0, lines.step}, {freeDuty ? 13 : 1, dutyStart * period, freeDuty ? 1.2 * lines.step : 0}, half};
+  static const int mostRounds = 5;
+  Moments moments;
+  for (int round = 0; round < mostRounds; ++round) {
+    if (freeDuty && range.length.middle - range.length.reach < shortest) {
+      const double longest = range.length.middle + range.length.reach;
+      range.length.middle = 0.5 * (shortest + longest);
+      range.length.reach = std::max(0.5 * (longest - shortest), 1e-3 * lines.step);
+    }
+    posterior.evaluate(range);
+    const std::vector<float> &chiSquares = posterior.m_chiSquares;
+    const float least = *std::min_element(chiSquares.begin(), chiSquares.end());
+    // Places between those of a coarse grid may be better: as many as half the way between two lets hope for.
+    static const double explained = 30;
+    const auto limit = static_cast<float>(least + explained * inflation);
+    int first[3] = {1 << 20, 1 << 20, 1 << 20}, last[3] = {-1, -1, -1};
+    double sum = 0;
+    Eigen::Vector3d ofFirst = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d ofSecond = Eigen::Matrix3d::Zero();
+    size_t place = 0;
+    for (int k = 0; k < range.length.count; ++k)
+      for (int i = 0; i < range.frequency.count; ++i)
+        for (int j = 0; j < range.delay.count; ++j, ++place) {
+          if (!(chiSquares[place] < limit)) {
+            continue;
+          }
+          const int at[3] = {i, j, k};
+          for (int axis = 0; axis < 3; ++axis) {
+            first[axis] = std::min(first[axis], at[axis]);
+            last[axis] = std::max(last[axis], at[axis]);
+          }
+          const double weight = std::exp(-0.5 * (chiSquares[place] - least) / inflation);
+          const Eigen::Vector3d x(range.frequency.at(i), range.delay.at(j), range.length.at(k) - dutyStart * period);
+          sum += weight;
+          ofFirst += weight * x;
+          ofSecond += weight * x * x.transpose();
+        }
+    ofFirst /= sum;
+    moments.mean = ofFirst;
+    moments.covariance = ofSecond / sum - ofFirst * ofFirst.transpose();
+    moments.chiSquare = least;
+    const auto cell = [](const Axis &axis) { return axis.count > 1 ? axis.step() : 1; };
+    moments.logEvidence = std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) - 0.5 * least / inflation;
+    const bool filled = 2 * (last[0] - first[0]) >= range.frequency.count && 2 * (last[1] - first[1]) >= range.delay.count &&
+                        (!freeDuty || 2 * (last[2] - first[2]) >= range.length.count);
+    if (filled) {
+      break;
+    }
+    range.frequency.narrow(first[0], last[0]);
+    range.delay.narrow(first[1], last[1]);
+    range.length.narrow(first[2], last[2]);
+  }
+  // From delays and lengths to frequency, phase and duty: t = (k + shift - phase) / f, later by d is a phase less by f d.
+  Eigen::Matrix3d by = Eigen::Matrix3d::Zero();
+  const double f = start(0), sign = posterior.m_inverted ? -1 : 1;
+  by(0, 0) = -f / half;
+  by(1, 1) = -f;
+  by(2, 2) = sign * f;
+  by(1, 2) = 0.5 * sign * f; // the pulse's middle stays
+  moments.mean = start + by * moments.mean;
+  moments.covariance = by * moments.covariance * by.transpose();
+  return moments;
+}
+
+END_VISP_NAMESPACE
