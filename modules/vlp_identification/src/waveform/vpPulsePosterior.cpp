@@ -36,8 +36,8 @@ struct Axis {
 };
 } // namespace
 
-//! The grid. Frequencies are those by which the first and the last line move, in seconds; phases are delays of all
-//! pulses, s; lengths are of a pulse, s.
+//! The grid. Frequencies are those by which the first and the last line move, in seconds; phases are delays
+//! of all pulses, s; lengths are of a pulse, s.
 struct vpPulsePosterior::Range {
   Axis frequency, delay, length;
   double half = 0; // s, of the profile
@@ -122,7 +122,8 @@ void vpPulsePosterior::addPulses(const Range &range, double ofFrequency)
   m_shareSquares.setZero(n);
   const double step = range.delay.step();
   for (const Pulse &pulse : m_pulses) {
-    const double middle = 0.5 * static_cast<double>(pulse.shares.size() - 1) - 0.5 * static_cast<double>(n - 1),
+    const double middle =
+                     0.5 * static_cast<double>(pulse.shares.size() - 1) - 0.5 * static_cast<double>(n - 1),
                  at = middle + std::clamp(pulse.middle / range.half, -beyond, beyond) * ofFrequency / step;
     const auto first = static_cast<Eigen::Index>(
         std::clamp(std::floor(at), 0.0, static_cast<double>(pulse.shares.size() - n - 1)));
@@ -146,27 +147,33 @@ void vpPulsePosterior::evaluate(const Range &range)
   const auto ofAmplitude = static_cast<float>(1 / (amplitude * amplitude)),
              ofOffset = static_cast<float>(m_weights + m_lines.darkness),
              lights = static_cast<float>(m_lights - m_lines.darkness * m_lines.dark),
-             squares = static_cast<float>(m_squares + m_lines.darkness * m_lines.dark * m_lines.dark) + ofAmplitude;
+             squares =
+                 static_cast<float>(m_squares + m_lines.darkness * m_lines.dark * m_lines.dark) + ofAmplitude;
   for (int k = 0; k < lengths.count; ++k) {
     tabulate(range, lengths.at(k));
     for (int i = 0; i < frequencies.count; ++i, out += range.delay.count) {
       addPulses(range, frequencies.at(i));
       Eigen::Map<Eigen::ArrayXf> chiSquare(out, range.delay.count);
       const auto second = m_products + ofAmplitude, ofSecond = m_shareSquares + ofAmplitude;
-      chiSquare = squares - (lights * lights * ofSecond - 2 * lights * m_shares * second + ofOffset * second.square()) /
-                                (ofOffset * ofSecond - m_shares.square()).max(1e-12f);
+      chiSquare = squares -
+                  (lights * lights * ofSecond - 2 * lights * m_shares * second + ofOffset * second.square()) /
+                      (ofOffset * ofSecond - m_shares.square()).max(1e-12f);
     }
   }
 }
 
-vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eigen::Vector3d &start, bool freeDuty,
-                                                  double inflation)
+vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eigen::Vector3d &start,
+                                                  bool freeDuty, double inflation)
 {
   vpPulsePosterior posterior(lines, start);
-  const double period = 1 / start(0), half = 0.5 * std::abs(lines.time(lines.time.size() - 1) - lines.time(0));
+  const double period = 1 / start(0),
+               half = 0.5 * std::abs(lines.time(lines.time.size() - 1) - lines.time(0));
   const double dutyStart = posterior.m_inverted ? 1 - start(2) : start(2);
   const double shortest = vpStripeLimits::leastDuty * period;
-  Range range{{15, 0, lines.step}, {25, 0, lines.step}, {freeDuty ? 13 : 1, dutyStart * period, freeDuty ? 1.2 * lines.step : 0}, half};
+  Range range{{15, 0, lines.step},
+              {25, 0, lines.step},
+              {freeDuty ? 13 : 1, dutyStart * period, freeDuty ? 1.2 * lines.step : 0},
+              half};
   static const int mostRounds = 5;
   Moments moments;
   for (int round = 0; round < mostRounds; ++round) {
@@ -198,7 +205,8 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
             last[axis] = std::max(last[axis], at[axis]);
           }
           const double weight = std::exp(-0.5 * (chiSquares[place] - least) / inflation);
-          const Eigen::Vector3d x(range.frequency.at(i), range.delay.at(j), range.length.at(k) - dutyStart * period);
+          const Eigen::Vector3d x(range.frequency.at(i), range.delay.at(j),
+                                  range.length.at(k) - dutyStart * period);
           sum += weight;
           ofFirst += weight * x;
           ofSecond += weight * x * x.transpose();
@@ -208,8 +216,10 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
     moments.covariance = ofSecond / sum - ofFirst * ofFirst.transpose();
     moments.chiSquare = least;
     const auto cell = [](const Axis &axis) { return axis.count > 1 ? axis.step() : 1; };
-    moments.logEvidence = std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) - 0.5 * least / inflation;
-    const bool filled = 2 * (last[0] - first[0]) >= range.frequency.count && 2 * (last[1] - first[1]) >= range.delay.count &&
+    moments.logEvidence = std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) -
+                          0.5 * least / inflation;
+    const bool filled = 2 * (last[0] - first[0]) >= range.frequency.count &&
+                        2 * (last[1] - first[1]) >= range.delay.count &&
                         (!freeDuty || 2 * (last[2] - first[2]) >= range.length.count);
     if (filled) {
       break;
@@ -218,7 +228,8 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
     range.delay.narrow(first[1], last[1]);
     range.length.narrow(first[2], last[2]);
   }
-  // From delays and lengths to frequency, phase and duty: t = (k + shift - phase) / f, later by d is a phase less by f d.
+  // From delays and lengths to frequency, phase and duty: t = (k + shift - phase) / f, later by d is a phase
+  // less by f d.
   Eigen::Matrix3d by = Eigen::Matrix3d::Zero();
   const double f = start(0), sign = posterior.m_inverted ? -1 : 1;
   by(0, 0) = -f / half;

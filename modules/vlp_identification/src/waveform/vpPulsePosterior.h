@@ -13,14 +13,15 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  The posterior of a lamp with one pulse a period, where lines leave gaps between their exposures and the cost is flat
-  with walls.
+  The posterior of a lamp with one pulse a period, where lines leave gaps between their exposures and the cost
+  is flat with walls.
 
-  Unknown are the frequency, the phase of the pulses' middles and their length; offset and amplitude are linear and
-  eliminated in each place. The chi-square is a sum over pulses, and that of one pulse depends on nothing but when it is
-  and how long: it is tabled once, so that a place on a grid of frequency, phase and length costs a look-up for each
-  pulse. The grid narrows down on the places that explain the lines until the posterior fills it, and the moments are
-  sums over it. Nothing is sampled, and no minimum has to be known better than to a line.
+  Unknown are the frequency, the phase of the pulses' middles and their length; offset and amplitude are
+  linear and eliminated in each place. The chi-square is a sum over pulses, and that of one pulse depends on
+  nothing but when it is and how long: it is tabled once, so that a place on a grid of frequency, phase and
+  length costs a look-up for each pulse. The grid narrows down on the places that explain the lines until the
+  posterior fills it, and the moments are sums over it. Nothing is sampled, and no minimum has to be known
+  better than to a line.
 */
 class vpPulsePosterior
 {
@@ -41,12 +42,12 @@ public:
   struct Moments {
     Eigen::Vector3d mean;
     Eigen::Matrix3d covariance;
-    double chiSquare = 0; // the least
+    double chiSquare = 0;   // the least
     double logEvidence = 0; // logarithm of the likelihood's integral, to a constant
   };
 
-  //! \param start Frequency, phase and duty, good to a line. \param freeDuty Whether the duty is unknown. \param
-  //! inflation Of the variances of the lines.
+  //! \param start Frequency, phase and duty, good to a line. \param freeDuty Whether the duty is unknown.
+  //! \param inflation Of the variances of the lines.
   static Moments about(const Lines &lines, const Eigen::Vector3d &start, bool freeDuty, double inflation);
 
 private:
@@ -63,7 +64,7 @@ private:
   double m_weights = 0, m_lights = 0, m_squares = 0;
   std::vector<Pulse> m_pulses;
   Eigen::ArrayXf m_shares, m_products, m_shareSquares; // sums over pulses, one a phase
-  std::vector<float> m_chiSquares;                      // length, frequency, phase
+  std::vector<float> m_chiSquares;                     // length, frequency, phase
 };
 
 END_VISP_NAMESPACE

@@ -36,7 +36,7 @@ inline double unlikely(double exposure, double sigma, double duty)
 {
   const double softened = 0.15;  // of the exposure's logarithm, by tone curves and blur
   const double spread = 0.3;     // of a duty that may be any
-  const double impossible = 100;     // chi-square
+  const double impossible = 100; // chi-square
   const double outside = std::min(duty, 1 - duty) < leastDuty ? impossible : 0;
   return std::pow(std::log(exposure) / std::hypot(softened, sigma), 2) + std::pow((duty - 0.5) / spread, 2) +
          outside;

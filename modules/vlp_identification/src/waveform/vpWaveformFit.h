@@ -106,12 +106,10 @@ private:
   struct Posterior {
     Vector mean;
     Matrix covariance;
-    double effective; // share of the samples that count
   };
   class Moments;
   class Uniform;
   Posterior posterior();
-  Posterior weighed(const Posterior &bell);
   Posterior sliced(const Posterior &bell);
   Posterior onGrid(const Posterior &bell);
   std::vector<double> likelyExposures(const Posterior &bell) const;

@@ -19,31 +19,6 @@
 
 BEGIN_VISP_NAMESPACE
 
-namespace
-{
-//! Inverse of the normal distribution, to 1e-8 or so (Beasley and Springer 1977, Moro 1995).
-double normalQuantile(double p)
-{
-  static const double a[] = {2.50662823884, -18.61500062529, 41.39119773534, -25.44106049637};
-  static const double b[] = {-8.47351093090, 23.08336743743, -21.06224101826, 3.13082909833};
-  static const double c[] = {0.3374754822726147, 0.9761690190917186, 0.1607979714918209,
-                             0.0276438810333863, 0.0038405729373609, 0.0003951896511919,
-                             0.0000321767881768, 0.0000002888167364, 0.0000003960315187};
-  const double y = p - 0.5;
-  if (std::abs(y) < 0.42) {
-    const double r = y * y;
-    return y * (((a[3] * r + a[2]) * r + a[1]) * r + a[0]) /
-           ((((b[3] * r + b[2]) * r + b[1]) * r + b[0]) * r + 1);
-  }
-  const double r = std::log(-std::log(y > 0 ? 1 - p : p));
-  double x = c[8];
-  for (int k = 7; k >= 0; --k) {
-    x = c[k] + r * x;
-  }
-  return y < 0 ? -x : x;
-}
-} // namespace
-
 //! Mean and covariance of weighted samples.
 class vpWaveformFit::Moments
 {
@@ -59,7 +34,6 @@ public:
     }
     const Vector apart = x - m_about;
     m_sum += weight;
-    m_squares += weight * weight;
     m_first += weight * apart;
     m_second += weight * apart * apart.transpose();
   }
@@ -71,13 +45,11 @@ public:
   }
   const Vector &likeliest() const { return m_likeliest; }
   double leastCost() const { return m_leastCost; }
-  //! How many samples of equal weight would say as much (Kong 1992).
-  double effective() const { return m_sum * m_sum / m_squares; }
 
 private:
   Vector m_about, m_first = Vector::Zero(), m_likeliest = Vector::Zero();
   Matrix m_second = Matrix::Zero();
-  double m_sum = 0, m_squares = 0, m_leastCost = std::numeric_limits<double>::infinity();
+  double m_sum = 0, m_leastCost = std::numeric_limits<double>::infinity();
 };
 
 //! Numbers between 0 and 1, the same each time.
@@ -132,20 +104,19 @@ vpWaveformFit::Posterior vpWaveformFit::posterior()
   reach(exposure) = std::max(m_settings.exposureTolerance * m_profile->exposure,
                              std::abs(m_x(exposure) - m_profile->exposure));
   const Matrix wide = reach.cwiseAbs2().cwiseInverse().asDiagonal();
-  const Posterior bell{m_x, (m_curvature / m_inflation + wide).inverse(), 0};
-  static const double gap = 1.15; // exposures from line to line
-  if (m_line > gap * m_x(exposure)) {
-    return m_settings.twoPulse ? sliced(bell) : onGrid(bell);
-  }
-  // What moves few edges from line to line is as bell-shaped as the noise.
+  const Posterior bell{m_x, (m_curvature / m_inflation + wide).inverse()};
+  // Where exposures follow each other without gaps, what moves few edges from line to line is as bell-shaped
+  // as the noise.
+  static const double gap = 1.15;   // exposures from line to line
   static const double sharp = 0.04; // lines: what one line alone leaves open of an edge in it
   const double open = (m_weight * m_given.square()).inverse().mean() * m_inflation;
-  if (open < sharp * sharp && !repeats()) {
+  if (m_line < gap * m_x(exposure) && open < sharp * sharp && !repeats()) {
     return bell;
   }
-  static const double good = 0.4; // share of the samples that count
-  const Posterior nearly = weighed(bell);
-  return nearly.effective > good ? nearly : sliced(bell);
+  // A line that an exposure of nearly a period shows two pulses of is not one pulse's alone.
+  const double pulse = std::min(m_x(duty), 1 - m_x(duty)),
+               exposed = m_x(exposure) * m_x(frequency); // periods
+  return m_settings.twoPulse || pulse + exposed > 1 - m_line * m_x(frequency) ? sliced(bell) : onGrid(bell);
 }
 
 bool vpWaveformFit::hidesDuty() const
@@ -236,48 +207,8 @@ double vpWaveformFit::frequencyNoise() const
   return gap() > 0 || repeats() ? std::min(m_sigma(frequency), sinusoidSigma()) : m_sigma(frequency);
 }
 
-/*!
-  Mean and covariance of exp(-cost / (2 inflation)), by samples from a normal distribution wider than \e bell,
-  each weighted by how much it was drawn too often.
-*/
-vpWaveformFit::Posterior vpWaveformFit::weighed(const Posterior &bell)
-{
-  static const int samples = 64;
-  static const double wider = 1.8; // variance of the samples
-  const Eigen::LLT<Matrix> root(wider * bell.covariance);
-  std::vector<Vector> places;
-  std::vector<double> costs, logs;
-  double most = -std::numeric_limits<double>::infinity();
-  for (int k = 0; k < samples; ++k) {
-    // Kronecker sequence of the generalised golden ratio in five dimensions (Roberts 2018): even, and the
-    // same each time.
-    static const double ratio = 1.1673039782614187;
-    Vector normal;
-    double power = 1;
-    for (int p = 0; p < parameters; ++p) {
-      power /= ratio;
-      const double turn = 0.5 + (k + 1) * power;
-      normal(p) = isFree(p) ? normalQuantile(std::clamp(turn - std::floor(turn), 1e-6, 1 - 1e-6)) : 0;
-    }
-    const Vector x = bell.mean + root.matrixL() * normal;
-    if (isPossible(x)) {
-      places.push_back(x);
-      costs.push_back(cost(x));
-      logs.push_back(-0.5 * costs.back() / m_inflation + 0.5 * normal.squaredNorm());
-      most = std::max(most, logs.back());
-    }
-  }
-  if (places.empty()) {
-    return bell;
-  }
-  Moments moments(bell.mean);
-  for (size_t k = 0; k < places.size(); ++k) {
-    moments.add(places[k], std::exp(logs[k] - most), costs[k]);
-  }
-  return {moments.mean(), moments.covariance(), moments.effective() / samples};
-}
-
-//! The same of one pulse a period, by all places on a grid, for each of the exposures that there may be.
+//! Mean and covariance of exp(-cost / (2 inflation)) of one pulse a period, by all places on a grid, for each
+//! of the exposures that there may be.
 vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
 {
   std::vector<Posterior> parts;
@@ -285,7 +216,8 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
   for (const double exposed : likelyExposures(bell)) {
     const vpPulsePosterior::Moments moments = momentsAt(exposed);
     static const double deeper = 0.8;
-    if (parts.empty() && moments.chiSquare < deeper * m_chiSquare) { // another minimum than the one that was known
+    if (parts.empty() &&
+        moments.chiSquare < deeper * m_chiSquare) { // another minimum than the one that was known
       const Vector before = m_x;
       const double least = m_cost;
       m_x.head<3>() = moments.mean;
@@ -314,7 +246,7 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
     within += weight * parts[k].covariance;
     sum += weight;
   }
-  return {all.mean(), all.covariance() + within / sum, 1};
+  return {all.mean(), all.covariance() + within / sum};
 }
 
 //! The fitted one, the stated one, and what the fit leaves open, s.
@@ -322,7 +254,8 @@ std::vector<double> vpWaveformFit::likelyExposures(const Posterior &bell) const
 {
   static const double different = 0.05, uncertain = 0.1, node = 1.22; // share; share; standard deviations
   const double fitted = m_x(exposure), stated = m_profile->exposure;
-  const double sigma = std::min(std::sqrt(std::max(0.0, bell.covariance(exposure, exposure))) / fitted, m_logExposureSigma);
+  const double sigma =
+      std::min(std::sqrt(std::max(0.0, bell.covariance(exposure, exposure))) / fitted, m_logExposureSigma);
   std::vector<double> exposures{fitted};
   if (std::abs(std::log(fitted / stated)) > different) {
     exposures.push_back(stated);
@@ -368,7 +301,7 @@ vpWaveformFit::Posterior vpWaveformFit::sliced(const Posterior &bell)
     judgeResiduals();
   }
   const Moments all = sweep(first.covariance(), sweeps, 1, uniform);
-  return {all.mean(), all.covariance(), 1};
+  return {all.mean(), all.covariance()};
 }
 
 //! Samples of exp(-cost / (2 inflation temperature)) from m_x on, along the axes of a covariance.
