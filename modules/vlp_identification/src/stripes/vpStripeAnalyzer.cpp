@@ -91,27 +91,40 @@ void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
   }
 }
 
+//! From where a fit may find the exposure, s: what is stated, and shorter and longer ones where that may be
+//! misstated.
+std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency)
+{
+  static const double longExposure = 0.3, sharp = 0.1, soft = 0.25; // periods
+  static const double uncertain = 0.2;                              // of the stated one's logarithm
+  std::vector<double> exposures{profile.exposure};
+  const double stated = profile.exposure * frequency;
+  if (stated > longExposure) { // from there no way leads to sharp stripes
+    exposures.push_back(sharp / frequency);
+  } else if (profile.logExposureSigma > uncertain && stated < sharp) {
+    exposures.push_back(soft / frequency);
+  }
+  return exposures;
+}
+
 std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start)
 {
   std::optional<vpWaveformFit> best;
   if (start.pulses) {
     const vpStripeStarts::Pulses &pulses = *start.pulses;
-    vpWaveformFit fit(profile, start.settings, start.envelope);
-    if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, 0, true) && fit.preferStatedExposure()) {
-      if (fit.misfit() < allExplained) {
-        return fit;
+    for (double exposure : exposuresOf(profile, pulses.frequency)) {
+      vpWaveformFit fit(profile, start.settings, start.envelope);
+      if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
+          fit.preferStatedExposure()) {
+        if (fit.misfit() < allExplained) {
+          return fit;
+        }
+        keepBetter(best, std::move(fit));
       }
-      keepBetter(best, std::move(fit));
     }
   }
   for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
-    std::vector<double> exposures{profile.exposure};
-    static const double longExposure =
-        0.3; // periods: it may be misstated, and from there no way leads to sharp stripes
-    if (profile.exposure * candidate.frequency > longExposure) {
-      exposures.push_back(0.1 / candidate.frequency);
-    }
-    for (double exposure : exposures) {
+    for (double exposure : exposuresOf(profile, candidate.frequency)) {
       for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
         vpWaveformFit fit(profile, start.settings, start.envelope);
         // The first harmonic peaks in the middle of the pulse.

@@ -84,9 +84,11 @@ std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
   return peaks;
 }
 
-std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, std::vector<size_t> peaks, int order)
+std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, std::vector<size_t> peaks,
+                                             int order)
 {
-  // A stripe that is brightest on the profile's first or last line may be the end of one whose rest is not seen.
+  // A stripe that is brightest on the profile's first or last line may be the end of one whose rest is not
+  // seen.
   if (peaks.size() > 1 && peaks.back() + 1 == profile.light.size()) {
     peaks.pop_back();
   }
@@ -142,8 +144,10 @@ std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, std
 std::vector<double> vpStripeStarts::envelopeOfPeriod(const vpStripeProfile &profile, double frequency)
 {
   const size_t n = profile.light.size();
-  const double line = std::abs(profile.time.back() - profile.time.front()) / static_cast<double>(std::max<size_t>(1, n - 1));
-  const auto half = static_cast<size_t>(std::clamp(std::round(0.5 / (frequency * line)), 1.0, static_cast<double>(n)));
+  const double line =
+      std::abs(profile.time.back() - profile.time.front()) / static_cast<double>(std::max<size_t>(1, n - 1));
+  const auto half =
+      static_cast<size_t>(std::clamp(std::round(0.5 / (frequency * line)), 1.0, static_cast<double>(n)));
   const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
   static const double least = 1e-3; // of the brightest line: dark lines beyond the lamp have no logarithm
   std::vector<double> most(n), smooth(n);
@@ -151,14 +155,16 @@ std::vector<double> vpStripeStarts::envelopeOfPeriod(const vpStripeProfile &prof
   for (size_t i = 0; i < n; ++i) {
     const auto [first, last] = around(i);
     const auto begin = profile.light.begin();
-    most[i] = std::log(std::max(*std::max_element(begin + static_cast<long>(first), begin + static_cast<long>(last)),
-                                least * brightest));
+    most[i] = std::log(
+        std::max(*std::max_element(begin + static_cast<long>(first), begin + static_cast<long>(last)),
+                 least * brightest));
   }
   for (size_t i = 0; i < n; ++i) {
     const auto [first, last] = around(i);
     const auto begin = most.begin();
-    smooth[i] = std::exp(std::accumulate(begin + static_cast<long>(first), begin + static_cast<long>(last), 0.0) /
-                         static_cast<double>(last - first));
+    smooth[i] =
+        std::exp(std::accumulate(begin + static_cast<long>(first), begin + static_cast<long>(last), 0.0) /
+                 static_cast<double>(last - first));
   }
   return smooth;
 }

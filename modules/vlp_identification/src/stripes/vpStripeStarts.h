@@ -29,8 +29,8 @@ std::vector<size_t> peaks(const vpStripeProfile &profile);
 */
 std::vector<double> envelope(const vpStripeProfile &profile, std::vector<size_t> peaks, int order);
 
-//! The same of a lamp that blinks about so fast (Hz), whatever its pattern: the most light within half a period, smoothed
-//! over a period.
+//! The same of a lamp that blinks about so fast (Hz), whatever its pattern: the most light within half a
+//! period, smoothed over a period.
 std::vector<double> envelopeOfPeriod(const vpStripeProfile &profile, double frequency);
 
 struct Sinusoid {

@@ -101,8 +101,8 @@ vpWaveformFit::Posterior vpWaveformFit::posterior()
   Vector reach = Vector::Ones();
   reach(phase) = reach(duty) = reach(phaseDifference) = 0.5 * m_line * m_x(frequency);
   reach(frequency) = reach(phase) / m_half;
-  reach(exposure) = std::max(m_settings.exposureTolerance * m_profile->exposure,
-                             std::abs(m_x(exposure) - m_profile->exposure));
+  reach(exposure) =
+      std::max(m_logExposureSigma * m_x(exposure), std::abs(m_x(exposure) - m_profile->exposure));
   const Matrix wide = reach.cwiseAbs2().cwiseInverse().asDiagonal();
   const Posterior bell{m_x, (m_curvature / m_inflation + wide).inverse()};
   // Where exposures follow each other without gaps, what moves few edges from line to line is as bell-shaped
