@@ -224,6 +224,8 @@ vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
                       "rig: picture size is 0, expected the camera's width and height");
   }
   m_timing = rig.lineTiming();
+  m_exposure =
+      vpExposureEvidence(std::hypot(m_timing.exposure(), m_timing.averaging()), m_timing.logExposureSigma());
   stripeAnalyzer.searchTwoPulses = std::any_of(map.lamps.begin(), map.lamps.end(), [](const vpLamp &lamp) {
     return lamp.modulation.kind == vpModulation::Kind::twoPulse;
   });
@@ -299,9 +301,11 @@ void vpLedDetector::place(vpLampObservation &lamp, const vpOutlineFit &fit, bool
 bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois)
 {
   m_observations.clear();
+  m_fits.clear();
   for (const vpLedRoi &roi : rois) {
     m_observations.push_back(observe(picture, roi));
   }
+  shareExposure(picture, rois);
   m_rowTimeError = recognizer.recognize(m_observations);
   if (joinPieces(picture, rois)) {
     m_rowTimeError = recognizer.recognize(m_observations);
@@ -364,6 +368,46 @@ bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRo
   return any;
 }
 
+vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
+                                          const vpLedRoi &roi) const
+{
+  vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
+  profile.exposure = m_exposure.exposure();
+  profile.logExposureSigma = m_exposure.logSigma();
+  return stripeAnalyzer.analyze(profile);
+}
+
+/*!
+  What the lamps say of the exposure together: those whose stripes said otherwise, or left the duty open, are
+  read again with it.
+*/
+void vpLedDetector::shareExposure(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois)
+{
+  const double before = m_exposure.logSigma();
+  for (const vpLampObservation &lamp : m_observations) {
+    m_exposure.add(lamp.features);
+  }
+  static const double better = 0.7, clearly = 3, open = 0.05; // share; standard deviations; duty
+  if (!(m_exposure.logSigma() < better * before)) {
+    return;
+  }
+  for (size_t i = 0; i < rois.size(); ++i) {
+    vpLampObservation &lamp = m_observations[i];
+    const vpStripeFeatures &seen = lamp.features;
+    if (seen.signal == vpStripeFeatures::Signal::unmodulated) {
+      continue;
+    }
+    const double off = std::abs(std::log(seen.exposure / m_exposure.exposure()));
+    if (!(off < clearly * m_exposure.logSigma()) || !(seen.dutySigma < open) ||
+        !(seen.frequencySigma < seen.frequency)) {
+      const double area = seen.area;
+      lamp.features = stripesOf(picture, m_fits[i], rois[i]);
+      lamp.features.area = area;
+      doubtClipped(lamp);
+    }
+  }
+}
+
 vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
 {
   vpLampObservation lamp;
@@ -375,8 +419,9 @@ vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpL
     m_blur = fit.blur;
   }
   if (!steady) {
-    lamp.features = stripeAnalyzer.analyze(vpStripeProfile::along(picture.grey, m_timing, fit, roi));
+    lamp.features = stripesOf(picture, fit, roi);
   }
+  m_fits.push_back(fit);
   measureArea(picture, roi, lamp);
   doubtClipped(lamp);
   place(lamp, fit, picture.transposed);

@@ -23,11 +23,12 @@ namespace
 
 const double allExplained = 0.01; // misfit: no other start will do better
 
+const int even = 2, uneven = 4; // bends of an emitter's envelope
+
 //! How many bends the envelope may have.
 int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
 {
   static const double evenEmitter = 1.6; // the brightest stripe over the dimmest
-  static const int even = 2, uneven = 4;
   if (peaks.size() < 2) {
     return 0;
   }
@@ -321,8 +322,10 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
   if ((!pwm || pwm->misfit() > allExplained) && !byAll.candidates().empty()) {
     // An emitter of any pattern is as bright as the brightest that a period shows.
-    byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, byAll.candidates().front().frequency),
-                     order, *this);
+    const double frequency = byAll.candidates().front().frequency,
+                 periods = frequency * std::abs(profile.time.back() - profile.time.front());
+    byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, frequency),
+                     std::clamp(static_cast<int>(periods), order, uneven), *this);
     std::optional<vpWaveformFit> other = fitPwm(profile, *byPeriod);
     if (other && (!pwm || other->cost() < pwm->cost())) {
       pwm = std::move(other);

@@ -27,6 +27,13 @@ constexpr double untrue = 0.02;
 //! Lit and dark share of a period of any lamp: less is a dim rim, a crossbar.
 constexpr double leastDuty = 0.05;
 
+//! How far a duty is from what it should be, a chi-square: it may be any that a lamp has.
+inline double unlikely(double duty)
+{
+  const double spread = 0.3, impossible = 100; // standard deviation; chi-square
+  return std::pow((duty - 0.5) / spread, 2) + (std::min(duty, 1 - duty) < leastDuty ? impossible : 0);
+}
+
 /*!
   Pulse and exposure are both boxes, and which is which the stripes do not say: how far an exposure and a
   pulse are from what they should be, a chi-square. \param exposure As a share of the stated one. \param sigma
@@ -34,12 +41,8 @@ constexpr double leastDuty = 0.05;
 */
 inline double unlikely(double exposure, double sigma, double duty)
 {
-  const double softened = 0.15;  // of the exposure's logarithm, by tone curves and blur
-  const double spread = 0.3;     // of a duty that may be any
-  const double impossible = 100; // chi-square
-  const double outside = std::min(duty, 1 - duty) < leastDuty ? impossible : 0;
-  return std::pow(std::log(exposure) / std::hypot(softened, sigma), 2) + std::pow((duty - 0.5) / spread, 2) +
-         outside;
+  const double softened = 0.15; // of the exposure's logarithm, by tone curves and blur
+  return std::pow(std::log(exposure) / std::hypot(softened, sigma), 2) + unlikely(duty);
 }
 
 //! Standard deviation that a choice between two values leaves, the one \e difference in chi-square less

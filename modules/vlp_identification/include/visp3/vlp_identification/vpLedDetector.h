@@ -13,6 +13,7 @@
 #include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_detection/vpLedRoiDetector.h>
 #include <visp3/vlp_detection/vpOutlineFitter.h>
+#include <visp3/vlp_identification/vpExposureEvidence.h>
 #include <visp3/vlp_identification/vpLedIdRecognizer.h>
 #include <visp3/vlp_identification/vpStripeAnalyzer.h>
 
@@ -76,17 +77,25 @@ public:
   //! What the lamps of the last picture say of the rig's row time.
   const vpRowTimeError &rowTimeError() const { return m_rowTimeError; }
 
+  //! What the lamps of all pictures so far say of the exposure.
+  const vpExposureEvidence &exposure() const { return m_exposure; }
+
 private:
   bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
   bool joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
   vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi);
+  vpStripeFeatures stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
+                             const vpLedRoi &roi) const;
+  void shareExposure(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois);
   void place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const;
 
   vpVlpRig m_rig;
   vpLineTiming m_timing;
   std::vector<vpLampObservation> m_observations;
   vpRowTimeError m_rowTimeError;
-  double m_blur = 0; // px, of the latest outline: mostly that of the lens
+  vpExposureEvidence m_exposure;
+  std::vector<vpOutlineFit> m_fits; // of the observations, until their exposure is known
+  double m_blur = 0;                // px, of the latest outline: mostly that of the lens
 };
 
 END_VISP_NAMESPACE

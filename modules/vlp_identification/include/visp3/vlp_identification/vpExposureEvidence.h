@@ -1,0 +1,48 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpExposureEvidence_h
+#define vpExposureEvidence_h
+
+#include <vector>
+
+#include <visp3/vlp_core/vpLampObservation.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  The exposure of the camera's lines, which all lamps of a frame and all frames of a run share.
+
+  Its prior is what the rig states: the logarithm is normal about the stated one. A lamp's stripes are the
+  pulse averaged over the exposure, two boxes of which the stripes do not say which is which
+  (vpStripeFeatures::duty and exposure may change places). So one lamp leaves two exposures open; lamps of
+  several frequencies have only the true one in common. The posterior is a product over lamps of these
+  mixtures, each with a share of lamps that say nothing, on a grid.
+*/
+class VISP_EXPORT vpExposureEvidence
+{
+public:
+  //! \param stated s. \param logSigma Standard deviation of its logarithm; 0: it is known.
+  explicit vpExposureEvidence(double stated = 0, double logSigma = 0);
+
+  //! Adds one lamp of one frame. Only stripes of one pulse a period count.
+  void add(const vpStripeFeatures &seen);
+
+  double stated() const { return m_stated; }     // s
+  double exposure() const { return m_exposure; } // s, by all that is known
+  double logSigma() const { return m_logSigma; } // standard deviation of its logarithm
+  //! Whether the stripes contradict what the rig states.
+  bool contradicts() const;
+
+private:
+  void summarise();
+
+  double m_stated, m_statedLogSigma;
+  double m_exposure, m_logSigma;
+  std::vector<double> m_logPosterior; // at logarithms from -reach to +reach about the stated one's
+};
+
+END_VISP_NAMESPACE
+
+#endif
