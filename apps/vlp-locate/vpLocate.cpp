@@ -18,6 +18,7 @@
 
 #include "common/vpInterrupt.h"
 #include "common/vpProgressBar.h"
+#include "common/vpTextBlock.h"
 #include "vpLocateOutputs.h"
 #include "vpLocateSummary.h"
 
@@ -156,9 +157,18 @@ private:
     return m_summary.positions() > 0 ? vpExitCode::done : vpExitCode::nothingFound;
   }
 
-  //! Whoever states no doubt of map and mount reads standard deviations that have none in them.
+  //! What the stripes contradict; and who states no uncertainty of map and mount reads standard deviations
+  //! without it.
   void remarkOnClaims() const
   {
+    const vpExposureEvidence &exposure = m_localizer.tracker.detector.exposure();
+    if (exposure.contradicts()) {
+      spdlog::warn(
+          "{}: shutter.exposure_s: {} s, expected about {} s: so soft are the stripes' edges, and lamps were "
+          "read with that",
+          vpOneLine(m_options.rigFile), vpFormat("%.2g", m_rig.shutter.exposure),
+          vpFormat("%.2g", exposure.exposure()));
+    }
     const bool mapDoubted = std::any_of(m_map.lamps.begin(), m_map.lamps.end(),
                                         [](const vpLamp &lamp) { return lamp.positionSigma > 0; });
     if (m_summary.positions() > 0 && !mapDoubted && m_rig.rotationSigma.isZero(0) &&

@@ -288,6 +288,24 @@ TEST(VlpLocate, SaysWhereNothingStatesADoubt)
   }
 }
 
+// An exposure that the rig misstates costs no id and is told, once.
+TEST(VlpLocate, TellsTheExposureThatTheStripesShow)
+{
+  const vpTemporaryFolder folder;
+  const auto rig = vpLocateScene::writeRig(folder);
+  const std::string file = folder.write("f.png", encoded(".png", vpLocateScene::picture())),
+                    right = folder.read("rig.yaml"), stated = "exposure_s: 43.1e-6";
+  for (const std::string wrong : {"6e-6", "43.1e-6", "3e-4"}) {
+    std::string text = right;
+    folder.write("rig.yaml", text.replace(text.find(stated), stated.size(), "exposure_s: " + wrong));
+    vpProcess locate("vlp-locate", with(rig, {"--image", file}));
+    EXPECT_EQ(locate.wait(), 0) << locate.err();
+    expectPose(locate.out(), 0);
+    EXPECT_EQ(locate.err().find("shutter.exposure_s: ") != std::string::npos, wrong != "43.1e-6")
+        << locate.err();
+  }
+}
+
 TEST(VlpLocate, TwoLampsAtTwoHeightsCanBeAmbiguous)
 {
   const vpTemporaryFolder folder;
