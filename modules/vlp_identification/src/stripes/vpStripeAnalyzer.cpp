@@ -38,6 +38,17 @@ int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &p
   return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
 }
 
+//! Whether a camera that sharpens would show: on stripes wide enough, and on more lines than such a wave could follow by
+//! chance.
+bool showsSharpening(const vpStripeProfile &profile, double frequency)
+{
+  static const size_t many = 40;   // lines
+  static const double narrow = 10; // lines of a period
+  const double span = std::abs(profile.time.back() - profile.time.front());
+  const auto lines = static_cast<double>(profile.time.size());
+  return profile.time.size() >= many && lines > narrow * span * frequency;
+}
+
 //! How bright the lamp is while it is lit, and what its stripes may then be.
 class Start
 {
@@ -325,15 +336,14 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     const double frequency = byAll.candidates().front().frequency,
                  periods = frequency * std::abs(profile.time.back() - profile.time.front());
     byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, frequency),
-                     std::clamp(static_cast<int>(periods), order, uneven), *this);
+                     std::clamp(static_cast<int>(periods) - 1, order, uneven), *this);
     std::optional<vpWaveformFit> other = fitPwm(profile, *byPeriod);
     if (other && (!pwm || other->cost() < pwm->cost())) {
       pwm = std::move(other);
       start = &*byPeriod;
     }
   }
-  static const size_t manyLines = 40; // that such a wave cannot follow by chance
-  if (pwm && pwm->misfit() > allExplained && profile.light.size() >= manyLines) { // a camera that sharpens
+  if (pwm && pwm->misfit() > allExplained && showsSharpening(profile, pwm->value(vpWaveformFit::frequency))) {
     start->settings.sharpened = true;
     std::optional<vpWaveformFit> other = fitPwm(profile, *start);
     static const double clearly = 0.5;
@@ -354,7 +364,13 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   // A second pulse explains a little of what blur and tone curve do to one, too.
   static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;
   if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
-    std::optional<vpWaveformFit> two = fitTwoPulse(profile, *start);
+    std::optional<vpWaveformFit> two = fitTwoPulse(profile, byAll);
+    if (byPeriod && !(two && two->misfit() < allExplained)) {
+      std::optional<vpWaveformFit> other = fitTwoPulse(profile, *byPeriod);
+      if (other && (!two || other->cost() < two->cost())) {
+        two = std::move(other);
+      }
+    }
     if (two && two->misfit() < maxMisfit &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
       two->integrate();
