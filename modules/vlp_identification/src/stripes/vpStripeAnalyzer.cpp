@@ -38,8 +38,8 @@ int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &p
   return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
 }
 
-//! Whether a camera that sharpens would show: on stripes wide enough, and on more lines than such a wave could follow by
-//! chance.
+//! Whether a camera that sharpens would show: on stripes wide enough, and on more lines than such a wave
+//! could follow by chance.
 bool showsSharpening(const vpStripeProfile &profile, double frequency)
 {
   static const size_t many = 40;   // lines

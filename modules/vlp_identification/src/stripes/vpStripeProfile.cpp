@@ -90,22 +90,22 @@ private:
 
 /*!
   A lamp adds light: its surroundings are no brighter than its darkest lines, which a glow beside its edge may
-  make them seem.
+  make them seem. \return By how much they were, grey levels up to 0.
 */
-void subtractDarkest(std::vector<double> &light)
+double subtractDarkest(std::vector<double> &light)
 {
   static const size_t few = 20; // a part of the lines
   if (light.empty()) {
-    return;
+    return 0;
   }
   std::vector<double> sorted = light;
   const auto darkest = sorted.begin() + static_cast<long>(sorted.size() / few);
   std::nth_element(sorted.begin(), darkest, sorted.end());
-  if (*darkest < 0) {
-    for (double &line : light) {
-      line -= *darkest;
-    }
+  const double below = std::min(0.0, *darkest);
+  for (double &line : light) {
+    line -= below;
   }
+  return below;
 }
 
 } // namespace
@@ -148,7 +148,8 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
     profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(line.samples));
     agreement.add(line, fit.noise);
   }
-  subtractDarkest(profile.light);
+  static const double nearlyWhite = 250; // grey value of a line that may have had more light than it shows
+  profile.white = nearlyWhite - fit.background - subtractDarkest(profile.light);
   profile.agreement = agreement.value();
   return profile;
 }

@@ -39,6 +39,13 @@ vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &set
   m_weight = (Eigen::Map<const Eigen::ArrayXd>(profile.sigma.data(), n).square() +
               (m_settings.modelError * m_light).square() + (spill * m_given).square())
                  .inverse();
+  static const double white = 0.02; // weight of a line that may have been any brighter
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (m_light(i) >= profile.white) {
+      m_white.push_back(i);
+      m_weight(i) *= white;
+    }
+  }
   // A dark lamp is about as dark as its surroundings, which the profile has no more.
   static const double glow = 0.05; // share of the lit lamp's light, standard deviation
   const double dark = std::max(1.0, glow * m_given.maxCoeff());
@@ -182,8 +189,11 @@ double vpWaveformFit::cost(const Vector &x)
   }
   A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
   A(0, 0) += m_darkness;
+  // Bends of four times the envelope are one standard deviation; of a tenth where the grey scale hides how
+  // bright it is.
+  const double unbent = m_white.empty() ? 0.06 : 100;
   for (int k = 2; k <= m_bends; ++k) {
-    A(k, k) += 0.06; // bends of four times the envelope are one standard deviation
+    A(k, k) += unbent;
   }
   A.triangularView<Eigen::StrictlyUpper>() = A.transpose();
   Column c = A.ldlt().solve(b);
@@ -299,7 +309,24 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
   for (int round = 0; round < 2 && m_bends > 1 && bendEnvelope(); ++round) {
     descend(20);
   }
+  for (int round = 0; round < 6 && brightenWhite(); ++round) {
+    descend(10);
+  }
   return m_x.allFinite() && m_cost < 1e299;
+}
+
+//! Takes lines that the grey scale cuts off for as bright as the fit has them (expectation of censored data,
+//! Dempster et al. 1977).
+bool vpWaveformFit::brightenWhite()
+{
+  const Eigen::ArrayXd expected = m_light - residuals();
+  for (Eigen::Index i : m_white) {
+    m_light(i) = std::max(m_profile->white, expected(i));
+  }
+  if (!m_white.empty()) {
+    prepareSums();
+  }
+  return !m_white.empty();
 }
 
 //! Takes what the polynomial found into the given envelope: where a lamp is ten times dimmer at its rim,

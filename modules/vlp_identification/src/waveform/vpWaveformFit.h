@@ -136,6 +136,7 @@ private:
   void normalEquations(Matrix &H, Vector &g);
   void descend(int iterations);
   bool bendEnvelope();
+  bool brightenWhite();
   Eigen::ArrayXd envelope() const;
   Eigen::ArrayXd residuals() const;
   bool isFree(int parameter) const
@@ -190,8 +191,9 @@ private:
   Vector m_sigma = Vector::Zero();
   Matrix m_curvature = Matrix::Zero(); // of half the cost, priors included
   double m_cost = 0;
-  double m_chiSquare = 0; // of the profile alone
-  double m_inflation = 1; // of all variances, by what the model leaves out
+  double m_chiSquare = 0;            // of the profile alone
+  double m_inflation = 1;            // of all variances, by what the model leaves out
+  std::vector<Eigen::Index> m_white; // lines that the grey scale cuts off
   // At m_x: at each line the wave (of two pulses: both, and the second one).
   vpPulseWave m_wave, m_second;
   std::array<double, mostLinear> m_coefficient{}; // the linear parameters of the latest cost()

@@ -5,6 +5,7 @@
 #ifndef vpStripeAnalyzer_h
 #define vpStripeAnalyzer_h
 
+#include <limits>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -21,7 +22,8 @@ struct VISP_EXPORT vpStripeProfile {
   std::vector<double> sigma;   // grey levels, of light by pixel noise
   double exposure = 0;         // s, of each line, averaging by a resize included
   double logExposureSigma = 0; // standard deviation of its logarithm, as the rig states it
-  double agreement = 1;        // correlation, over the lines, of their left and right halves
+  double white = std::numeric_limits<double>::infinity(); // grey levels of light where the grey scale ends
+  double agreement = 1; // correlation, over the lines, of their left and right halves
 
   /*!
     Profile inside an outline (in samples and lines, as the fitter gives it). Of an ellipse, each line's light
