@@ -426,13 +426,12 @@ vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpL
   doubtClipped(lamp);
   place(lamp, fit, picture.transposed);
   lamp.cut = roi.cutAcross || roi.cutAlong;
+  // Of a lamp of which less than half is seen longer and shorter ellipses fit about as well, the less of it
+  // the more.
   const Eigen::Vector2d &centre = fit.outline.centre;
-  if (lamp.cut && !(centre.x() >= 0 && centre.x() < picture.grey.cols && centre.y() >= 0 &&
-                    centre.y() < picture.grey.rows)) {
-    // Less than half of its outline is seen, which fits longer and shorter ellipses about as well.
-    const double anywhere = 0.5 * lamp.outline.diameter();
-    lamp.covariance += anywhere * anywhere * Eigen::Matrix2d::Identity();
-  }
+  const Eigen::Vector2d last(picture.grey.cols - 1, picture.grey.rows - 1);
+  const double outside = (centre - centre.cwiseMin(last).cwiseMax(Eigen::Vector2d::Zero())).norm();
+  lamp.covariance += outside * outside * Eigen::Matrix2d::Identity();
   return lamp;
 }
 

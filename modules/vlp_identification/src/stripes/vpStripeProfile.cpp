@@ -116,7 +116,8 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   const vpLampOutline &outline = fit.outline;
   const bool ellipse = outline.shape == vpLampOutline::Shape::ellipse; // else its sides along the lines hide
   const bool soft = outline.shape == vpLampOutline::Shape::region || fit.blur > 0.1 * outline.diameter() / 2;
-  const double margin = soft ? 0 : 2 * fit.blur;
+  static const double halfALine = 0.5; // px, that a line is wide beside its middle
+  const double margin = soft ? 0 : 2 * fit.blur + halfALine;
   const Eigen::Vector4d box = outline.box();
   const double top = ellipse ? std::max(0.0, box(1)) : std::max<double>(roi.box.y, box(1));
   const double bottom =
