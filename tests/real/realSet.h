@@ -40,7 +40,12 @@ public:
 
   bool present() const { return !m_folder.empty(); }
   YAML::Node images() const { return m_set["images"]; }
-  size_t lampsIn(const YAML::Node &image) const { return image["lamps_px"].size(); }
+  //! How many of the map's are in a picture.
+  size_t lampsIn(const YAML::Node &image) const
+  {
+    const YAML::Node lamps = image["lamps_px"];
+    return lamps.size() - (lamps[doesNotBlink] ? 1 : 0);
+  }
 
   vpVlpFrame frame(const YAML::Node &image)
   {
@@ -105,6 +110,9 @@ public:
     }
     for (const auto &listed : image["lamps_px"]) {
       const auto id = listed.first.as<std::string>();
+      if (id == doesNotBlink) {
+        continue;
+      }
       const Eigen::Vector2d centre(listed.second[0].as<double>(), listed.second[1].as<double>());
       for (const vpLampObservation &lamp : seen) {
         const bool same = lamp.id == id || lamp.id == "L" + id; // lumia-room lists lamps without their L
@@ -117,6 +125,8 @@ public:
   }
 
 private:
+  static constexpr const char *doesNotBlink = "NONE"; // id of a listed lamp that is none of the map's
+
   static double number(const YAML::Node &node, const char *key, double otherwise)
   {
     return node && node[key] ? node[key].as<double>() : otherwise;

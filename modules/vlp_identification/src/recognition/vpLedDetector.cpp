@@ -12,6 +12,7 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpRect.h>
+#include <visp3/vlp_identification/vpLedIdEvidence.h>
 
 #include "stripes/vpLampGlance.h"
 #include "stripes/vpSteadyLight.h"
@@ -150,6 +151,13 @@ bool alike(const vpLampObservation &a, const vpLampObservation &b)
 {
   return !a.candidates.empty() && !b.candidates.empty() &&
          a.candidates.front().identifier == b.candidates.front().identifier;
+}
+
+//! Whether a region blinks, but too few of its stripes are seen to say how.
+bool blinksSomehow(const vpLampObservation &lamp)
+{
+  return lamp.features.signal != vpStripeFeatures::Signal::unmodulated &&
+         !vpLedIdEvidence::tells(lamp.features);
 }
 
 cv::Rect2d boxOf(const vpLampOutline &outline)
@@ -345,12 +353,14 @@ bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRo
       vpLampObservation &one = m_observations[i], &other = m_observations[k];
       vpLedRoi both;
       vpLampObservation whole;
-      if (alike(one, other) && (rois[i].box & rois[k].box).area() > 0) {
+      const bool pieces = alike(one, other) || (blinksSomehow(one) && !other.candidates.empty()) ||
+                          (blinksSomehow(other) && !one.candidates.empty());
+      if (pieces && (rois[i].box & rois[k].box).area() > 0) {
         both = joined(rois[i], rois[k]);
         whole = observe(picture, both);
         recognizer.recognize(whole);
       }
-      if (alike(whole, one)) {
+      if (alike(whole, one) || alike(whole, other)) {
         rois[i] = both;
         one = whole;
       } else if (isPartOf(one, other)) {

@@ -81,6 +81,31 @@ std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt, d
   return "";
 }
 
+/*!
+  A lamp hangs in one place. What blinks as it does elsewhere, with a small part of its light, is its
+  reflection in a pane or on a shiny thing, or a piece of it: it keeps its candidates and has no id.
+*/
+void dropReflections(std::vector<vpLampObservation> &lamps)
+{
+  static const double much = 3; // times the lit area
+  std::vector<size_t> reflections;
+  for (size_t i = 0; i < lamps.size(); ++i) {
+    const bool reflected =
+        !lamps[i].id.empty() && std::any_of(lamps.begin(), lamps.end(), [&](const vpLampObservation &other) {
+          return other.id == lamps[i].id && other.outline.shape != vpLampOutline::Shape::region &&
+                 other.features.area > much * lamps[i].features.area;
+        });
+    if (reflected) {
+      reflections.push_back(i);
+    }
+  }
+  for (size_t i : reflections) {
+    lamps[i].remark = "blinks as lamp " + lamps[i].id + ", which is larger elsewhere: its reflection";
+    lamps[i].id.clear();
+    lamps[i].confidence = 1 - lamps[i].confidence;
+  }
+}
+
 } // namespace
 
 //! An identifier that may have been seen, the row time's error aside.
@@ -327,6 +352,7 @@ vpRowTimeError vpLedIdRecognizer::recognize(std::vector<vpLampObservation> &lamp
     sights[i].judge(errors, normalised(std::move(others)), gate);
     decide(lamps[i], sights[i]);
   }
+  dropReflections(lamps);
   vpRowTimeError error;
   const std::vector<double> weights = normalised(std::move(together));
   for (size_t k = 0; k < errors.size(); ++k) {

@@ -219,7 +219,8 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
   static const double wordMisfit = 0.1;
   static const double explained = 2, nearlyExplained = 3; // chi-square per degree of freedom
   static const double exposureTolerance = 0.5;            // of its logarithm
-  const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, exposureTolerance}, envelope);
+  const double tolerance = std::hypot(exposureTolerance, profile.logExposureSigma);
+  const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, tolerance}, envelope);
   const bool neither = !(unexplained < analyzer.maxMisfit);
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
   // A word without a name has two pulses or more, and fewer than three stripes would repeat none of them.
@@ -322,7 +323,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   features.modulation = depthOf(profile);
 
   const int order = envelopeOrderOf(profile, peaks);
-  Start byAll(profile, vpStripeStarts::envelope(profile, peaks, order), order, *this);
+  const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
+  Start byAll(profile, vpStripeStarts::envelope(profile, whole, order), order, *this);
   if (features.modulation < minModulation || profile.agreement < minAgreement ||
       !byAll.significant(minSignificance)) {
     return features;
@@ -381,7 +383,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
   if (!(features.misfit < beyondDoubt)) {
     const std::optional<vpWordSearch::Found> word =
-        findWord(profile, byAll.envelope, byAll.settings.envelopeOrder, *this, features.misfit, peaks.size());
+        findWord(profile, vpStripeStarts::envelope(profile, peaks, order), order, *this, features.misfit,
+                 peaks.size());
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }

@@ -84,17 +84,20 @@ std::vector<size_t> vpStripeStarts::peaks(const vpStripeProfile &profile)
   return peaks;
 }
 
-std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, std::vector<size_t> peaks,
-                                             int order)
+std::vector<size_t> vpStripeStarts::wholePeaks(const vpStripeProfile &profile, std::vector<size_t> peaks)
 {
-  // A stripe that is brightest on the profile's first or last line may be the end of one whose rest is not
-  // seen.
   if (peaks.size() > 1 && peaks.back() + 1 == profile.light.size()) {
     peaks.pop_back();
   }
   if (peaks.size() > 1 && peaks.front() == 0) {
     peaks.erase(peaks.begin());
   }
+  return peaks;
+}
+
+std::vector<double> vpStripeStarts::envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks,
+                                             int order)
+{
   if (peaks.empty()) {
     const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
     return std::vector<double>(profile.light.size(), std::max(1.0, brightest));

@@ -23,11 +23,15 @@ namespace vpStripeStarts
 */
 std::vector<size_t> peaks(const vpStripeProfile &profile);
 
+//! Those that are surely as bright as the lamp: one on the profile's first or last line may be the end of a
+//! stripe whose rest is not seen.
+std::vector<size_t> wholePeaks(const vpStripeProfile &profile, std::vector<size_t> peaks);
+
 /*!
   How bright the lamp is at each line while it is lit, grey levels: the exponential of a polynomial of the
   given order through the logarithms of the peaks' heights.
 */
-std::vector<double> envelope(const vpStripeProfile &profile, std::vector<size_t> peaks, int order);
+std::vector<double> envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks, int order);
 
 //! The same of a lamp that blinks about so fast (Hz), whatever its pattern: the most light within half a
 //! period, smoothed over a period.
