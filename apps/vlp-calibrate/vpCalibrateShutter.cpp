@@ -154,6 +154,7 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
     rig.shutter.rowTimeSigma = found.rowTimeSigma;
     if (std::isfinite(found.exposure)) {
       rig.shutter.exposure = found.exposure;
+      rig.shutter.exposureSigma = found.exposureSigma;
     }
     using Readout = vpRollingShutter::Readout;
     if (rig.shutter.alongColumns() != found.alongColumns) {

@@ -22,10 +22,14 @@ BEGIN_VISP_NAMESPACE
   line scaled to [-1, 1] over the profile.
 
   Offset and envelope are linear and solved for at each step (variable projection, Golub and Pereyra 1973);
-  Levenberg and Marquardt's method does the rest. Where the lines leave gaps between their exposures, an edge
-  of a pulse may lie anywhere in one: the cost is flat there and its curvature says nothing. So integrate()
-  takes mean and standard deviation from samples of the posterior (population Monte Carlo, Cappe et al. 2004),
-  with the same samples each time.
+  Levenberg and Marquardt's method does the rest. A camera that sharpens makes lit lines beside dark ones
+  brighter: one more linear column. Lines that the grey scale cuts off are censored: they count as bright as
+  the fit has them.
+
+  Where the lines leave gaps between their exposures, an edge of a pulse may lie anywhere in one: the cost is
+  flat there and its curvature says nothing. So integrate() takes mean and standard deviation from the
+  posterior itself: of one pulse a period summed over a grid (vpPulsePosterior), of two by slice sampling
+  (Neal 2003), with the same random numbers each time.
 */
 class vpWaveformFit
 {

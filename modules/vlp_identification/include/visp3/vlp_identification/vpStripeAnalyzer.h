@@ -26,12 +26,11 @@ struct VISP_EXPORT vpStripeProfile {
   double agreement = 1; // correlation, over the lines, of their left and right halves
 
   /*!
-    Profile inside an outline (in samples and lines, as the fitter gives it). Of an ellipse, each line's light
-    is told as that of the lamp's middle: how the emitter dims towards its rim is seen along each lit line,
-    where no stripe can be confused with it, and white pixels, which hide how bright they are, stay out where
-    a line has others. A quadrilateral's sides along the lines are hardly seen: its lines beyond the first and
-    last lit one of \e roi may be dark stripes or no lamp at all, and stay out. Of a lamp with a soft edge
-    only the middle strip counts, where its glow is even.
+    Profile inside an outline (in samples and lines, as the fitter gives it): the mean of each line's samples.
+    However an emitter's light is spread, it makes the stripes' envelope, which the waveform's fit finds.
+    Lines count that lie wholly inside, of a quadrilateral those from the first to the last lit one of \e roi:
+    its sides along the lines are hardly seen. Of a lamp with a soft edge only the middle strip counts, where
+    its glow is even. The surroundings are no brighter than the lamp's darkest lines.
   */
   static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                const vpOutlineFit &fit, const vpLedRoi &roi);
@@ -67,8 +66,8 @@ class VISP_EXPORT vpStripeAnalyzer
 {
 public:
   double modelError = 0.03; // share of a line's light that the model may be off by, standard deviation
-  //! How far the exposure is off the rig's, as a share of it: the half-width of a Cauchy distribution. Blur
-  //! and a phone's tone curve soften edges far more, now and then.
+  //! How far one lamp's exposure is off the camera's, beyond what the profile states of that: half-width of a
+  //! Cauchy distribution of its logarithm. Blur and a phone's tone curve soften edges far more, now and then.
   double exposureTolerance = 0.02;
   //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained; no word of unknown format
   //! is sought below. Between the little that there is: pwm lamps of phones leave up to 0.09, coded lamps
