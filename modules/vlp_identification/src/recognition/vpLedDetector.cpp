@@ -384,7 +384,18 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
   profile.exposure = m_exposure.exposure();
   profile.logExposureSigma = m_exposure.logSigma();
-  return stripeAnalyzer.analyze(profile);
+  const vpStripeFeatures features = stripeAnalyzer.analyze(profile);
+  if (vpLedIdEvidence::tells(features) || features.modulation < stripeAnalyzer.minModulation) {
+    return features;
+  }
+  // What the lines' means hide the columns may agree on.
+  vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, roi, fit.noise);
+  agreed.exposure = m_exposure.exposure();
+  agreed.logExposureSigma = m_exposure.logSigma();
+  const vpStripeFeatures other = stripeAnalyzer.analyze(agreed);
+  // Any texture has two shades that some columns agree on.
+  static const unsigned int few = 3;
+  return other.stripes >= few && vpLedIdEvidence::tells(other) ? other : features;
 }
 
 /*!

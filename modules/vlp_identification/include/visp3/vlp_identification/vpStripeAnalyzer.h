@@ -34,6 +34,17 @@ struct VISP_EXPORT vpStripeProfile {
   */
   static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                const vpOutlineFit &fit, const vpLedRoi &roi);
+
+  /*!
+    The same of a luminaire of any emission pattern: a pixel is S(u, v) m(v), S any positive pattern, m the
+    modulation. Each strip of a few columns is divided by the most light that it has within a period of the
+    slowest lamp that shows four; the median over the strips of a line is m, for patches, glare and clipped
+    columns are outliers of a few strips, and their spread is its standard deviation. Less certain than
+    along() where the emitter is even. \param noise Grey levels, of a pixel. \return As if a lit line had 100
+    grey levels; empty where a region is too narrow.
+  */
+  static vpStripeProfile agreedByColumns(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
+                                         const vpLedRoi &roi, double noise);
 };
 
 //! How the words of a map's lamps are sent: what is known of a word before its chips are.
