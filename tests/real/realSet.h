@@ -29,11 +29,13 @@ using namespace VISP_NAMESPACE_NAME;
 class RealSet
 {
 public:
-  explicit RealSet(const std::string &name)
+  explicit RealSet(const std::string &name) : RealSet(name, environment()) {}
+
+  //! \param root Folder of the sets; empty: none.
+  RealSet(const std::string &name, const std::string &root)
   {
-    const char *root = std::getenv("VLP_INPUT_IMAGE_PATH");
-    if (root != nullptr) {
-      m_folder = std::string(root) + "/" + name + "/";
+    if (!root.empty()) {
+      m_folder = root + "/" + name + "/";
       m_set = YAML::LoadFile(m_folder + "set.yaml");
     }
   }
@@ -126,6 +128,12 @@ public:
 
 private:
   static constexpr const char *doesNotBlink = "NONE"; // id of a listed lamp that is none of the map's
+
+  static std::string environment()
+  {
+    const char *root = std::getenv("VLP_INPUT_IMAGE_PATH");
+    return root != nullptr ? root : "";
+  }
 
   static double number(const YAML::Node &node, const char *key, double otherwise)
   {

@@ -62,13 +62,14 @@ vpOutlineFit likelier(const vpEdgeFit<vpEllipseModel> &ellipse, const vpEdgeFit<
   return best;
 }
 
+const double rare = 6; // chi-square of the shape's prior
+
 /*!
   Thin stripes far apart show little of an outline: where they make an ellipse longer than lamps are seen, it
   may be another shape altogether, and the middle lies anywhere along it.
 */
 void addElongationDoubt(vpLampOutline &ellipse, const vpLedRoi &roi, double prior)
 {
-  static const double rare = 6; // chi-square of the shape's prior
   if (prior > rare && roi.chords.size() < ellipse.b) {
     const Eigen::Vector2d along(std::cos(ellipse.angle), std::sin(ellipse.angle));
     const double doubt = 0.5 * (ellipse.a - ellipse.b);
@@ -92,6 +93,13 @@ bool holds(const vpOutlineFit &fit, const vpLedRoi &roi)
 const double softMisfit = 0.15; // share of the radius, root mean square of chord ends about their ellipse
 const double evenEdge = 0.45;   // evenness below which a lamp glows about a bright core
 
+//! Whether an edge is that of a lamp: a bright core in a glow has none of its own.
+bool isSharp(const vpOutlineFit &fit)
+{
+  static const double sharp = 0.1; // share of the radius
+  return fit.blur <= std::max(1.0, sharp * 0.5 * fit.outline.diameter());
+}
+
 /*!
   A lamp that glows about a bright core: its glow, or a housing that it lights, may lie anywhere about it. Its
   middle is that of its light. Across the lines stripes weigh on it a little.
@@ -110,7 +118,7 @@ void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines,
   if (weight > 0) {
     outline.centre = sum / weight;
   }
-  static const Eigen::Vector2d doubt(0.04, 0.06); // share of the radius, standard deviation
+  static const Eigen::Vector2d doubt(0.08, 0.12); // share of the radius, standard deviation
   outline.centreCovariance = (0.5 * outline.diameter() * doubt).cwiseAbs2().asDiagonal();
 }
 
@@ -184,13 +192,22 @@ std::optional<vpOutlineFit> withoutCompanion(const vpEdgeFitPicture &picture, co
     return std::nullopt;
   }
   vpOutlineFit lamp = fit.result();
-  static const double sharp = 0.1; // share of the radius: a bright core in a glow has no edge of its own
-  if (lamp.blur > std::max(1.0, sharp * 0.5 * lamp.outline.diameter())) {
+  if (!isSharp(lamp)) {
     return std::nullopt;
   }
   static const double pulled = 0.04; // px, by what light there is beside the edge
   lamp.outline.centreCovariance += pulled * pulled * Eigen::Matrix2d::Identity();
   return lamp;
+}
+
+/*!
+  Light that grows inwards makes a blurred edge seem farther in, by the square of its blur times the growth:
+  to one side of an uneven emitter more than to the other.
+*/
+void addGrowthDoubt(vpOutlineFit &fit, double evenness)
+{
+  const double doubt = fit.blur * fit.blur * (1 / evenness - 1) / (0.5 * fit.outline.diameter());
+  fit.outline.centreCovariance += doubt * doubt * Eigen::Matrix2d::Identity();
 }
 
 //! Where edges are uneven and leave much of the light about them unexplained, some are not the lamp's.
@@ -318,14 +335,17 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   const bool sided = best.outline.shape == vpLampOutline::Shape::quadrilateral;
   if (cut && (!even || (sided && !showsSides(best.outline, lines.size())))) {
     best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
-  } else if (!even && (isEllipse || ellipseMisfit < std::min(softMisfit * start.radius(), 2 * sidesMisfit))) {
+  } else if (!even &&
+             !(isEllipse && isSharp(best) && ellipse.prior() < rare && ellipse.kept() > nearlyPerfect) &&
+             (isEllipse || ellipseMisfit < std::min(softMisfit * start.radius(), 2 * sidesMisfit))) {
     if (!isEllipse) {
       best.outline = start.outline(Eigen::MatrixXd::Zero(2, 2));
       best.blur = softMisfit * start.radius();
     }
     centreOnLight(best.outline, lines, roi);
-  } else if (even && evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
+  } else if (evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
     addCompanionDoubt(best.outline, ellipse.misfit(), brightestOf(lines, roi));
+    addGrowthDoubt(best, evenness);
   }
   return best;
 }

@@ -25,6 +25,21 @@ double medianOf(std::vector<double> &values)
   return *middle;
 }
 
+//! Standard deviation of a region's pixels, grey levels: what neighbours differ by, whatever pattern they
+//! show.
+double noiseOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
+{
+  static const double least = 0.3,
+                      perMedian = 0.954; // 8 bits round; median of two Gaussian pixels' difference
+  std::vector<double> differences;
+  for (int line = box.y; line < box.br().y; ++line) {
+    for (int x = box.x; x + 1 < box.br().x; ++x) {
+      differences.push_back(std::abs(lines(line, x + 1) - lines(line, x)));
+    }
+  }
+  return differences.empty() ? least : std::max(least, medianOf(differences) / perMedian);
+}
+
 //! Means of a region's lines in strips of columns, grey levels above its darkest twentieth; one row a line.
 cv::Mat_<double> stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, int width)
 {
@@ -95,13 +110,11 @@ struct LineShare {
 } // namespace
 
 vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &lines,
-                                                 const vpLineTiming &timing, const vpLedRoi &roi,
-                                                 double noise)
+                                                 const vpLineTiming &timing, const vpLedRoi &roi)
 {
   static const int mostStrips = 24, narrowest = 2; // samples
   static const int periods = 4;                    // that a lamp shows, or more
-  static const double sigmas = 6, dimmest = 0.04;  // standard deviations; of the brightest strip
-  static const double quietest = 0.3;              // grey levels: 8 bits round
+  static const double sigmas = 10, dimmest = 0.04; // standard deviations; of the brightest strip
   static const double lit = 100, least = 0.5;      // grey levels, of a lit line; of its standard deviation
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
@@ -112,10 +125,10 @@ vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &
   }
   const cv::Mat_<double> strips = stripsOf(lines, roi.box, width);
   const cv::Mat_<double> most = envelopeOf(strips, std::max(2, roi.box.height / (2 * periods)));
-  const double enough = std::max(sigmas * std::max(noise, quietest) / std::sqrt(width),
+  const double enough = std::max(sigmas * noiseOf(lines, roi.box) / std::sqrt(width),
                                  dimmest * *std::max_element(most.begin(), most.end()));
   double differences = 0; // of the halves, sum of squares
-  int halves = 0;
+  int halves = 0, last = -1;
   for (int line = 0; line < strips.rows; ++line) {
     const LineShare share(strips[line], most[line], strips.cols, enough);
     if (share.halvesKnown) {
@@ -123,6 +136,10 @@ vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &
       ++halves;
     }
     if (share.known) {
+      if (line > last + 1 && last >= 0) {
+        return {}; // dark for longer than a lamp of so many periods is
+      }
+      last = line;
       profile.time.push_back(timing.middle(static_cast<unsigned int>(roi.box.y + line)));
       profile.light.push_back(lit * share.median);
       profile.sigma.push_back(std::max(least, lit * share.sigma));

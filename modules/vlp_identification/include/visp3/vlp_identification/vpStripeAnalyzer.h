@@ -40,11 +40,11 @@ struct VISP_EXPORT vpStripeProfile {
     modulation. Each strip of a few columns is divided by the most light that it has within a period of the
     slowest lamp that shows four; the median over the strips of a line is m, for patches, glare and clipped
     columns are outliers of a few strips, and their spread is its standard deviation. Less certain than
-    along() where the emitter is even. \param noise Grey levels, of a pixel. \return As if a lit line had 100
-    grey levels; empty where a region is too narrow.
+    along() where the emitter is even. \return As if a lit line had 100 grey levels; empty where a region is
+    too narrow, or dark for longer than such a lamp is.
   */
   static vpStripeProfile agreedByColumns(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
-                                         const vpLedRoi &roi, double noise);
+                                         const vpLedRoi &roi);
 };
 
 //! How the words of a map's lamps are sent: what is known of a word before its chips are.

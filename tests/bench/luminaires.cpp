@@ -1,0 +1,183 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// Which ids the detector reads off luminaires of many emission patterns, drawn and taken off real pictures,
+// and how far off their middles are: the table of BENCHMARK.md.
+//
+// bench_luminaires [LAMPS of each family] [FAMILY|all|drawn|real] [SEED] [linear|phone] (540 all 1 linear).
+// Real families need VLP_INPUT_IMAGE_PATH. A phone's pictures have a tone curve of 2.2 and are JPEGs of
+// quality 90.
+
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <Eigen/LU>
+#include <visp3/vlp_identification/vpLedDetector.h>
+
+#include "luminaires/vpHalfRealTrial.h"
+#include "vpSimulatedStripes.h"
+
+namespace
+{
+//! What became of the lamps of a family.
+struct Outcome {
+  int lamps = 0, right = 0, wrong = 0;
+  std::map<std::string, int> missing; // by remark
+  std::vector<double> errors, shares; // of middles, px; of their standard deviations
+
+  void add(const Outcome &other)
+  {
+    lamps += other.lamps;
+    right += other.right;
+    wrong += other.wrong;
+    for (const auto &[remark, count] : other.missing) {
+      missing[remark] += count;
+    }
+    errors.insert(errors.end(), other.errors.begin(), other.errors.end());
+    shares.insert(shares.end(), other.shares.begin(), other.shares.end());
+  }
+};
+
+//! Whether an observation is of a lamp: its middle lies on it, or it surrounds the lamp's.
+bool isOf(const vpLampObservation &seen, const vpHalfRealLamp &lamp)
+{
+  static const double glow = 1.25; // radii of the outline
+  const Eigen::Vector4d box = seen.outline.box();
+  const bool around = box(0) < lamp.middle.x() && lamp.middle.x() < box(2) && box(1) < lamp.middle.y() &&
+                      lamp.middle.y() < box(3);
+  return around || (seen.outline.centre - lamp.middle).norm() < glow * 0.5 * lamp.diameter;
+}
+
+//! Of the observation's own standard deviation and the truth's, for two coordinates together.
+double inSigmas(const vpLampObservation &seen, const vpHalfRealLamp &lamp)
+{
+  const Eigen::Vector2d off = seen.point - lamp.middle;
+  const Eigen::Matrix2d covariance =
+      seen.covariance + lamp.middleSigma() * lamp.middleSigma() * Eigen::Matrix2d::Identity();
+  return std::sqrt(off.dot(covariance.inverse() * off));
+}
+
+//! A lamp counts once as right or missing; each id that is not its own counts as wrong.
+Outcome judged(const vpHalfRealTrial &trial, const std::vector<vpLampObservation> &observations)
+{
+  Outcome outcome;
+  std::vector<bool> known(observations.size(), false);
+  for (const vpHalfRealLamp &lamp : trial.picture.lamps) {
+    ++outcome.lamps;
+    bool right = false;
+    std::string remark = "no region";
+    for (size_t i = 0; i < observations.size(); ++i) {
+      const vpLampObservation &seen = observations[i];
+      if (known[i] || !isOf(seen, lamp)) {
+        continue;
+      }
+      if (seen.id.empty()) {
+        remark = seen.remark;
+        continue;
+      }
+      known[i] = true;
+      outcome.wrong += seen.id != lamp.id;
+      if (seen.id == lamp.id && !right) {
+        right = true;
+        outcome.errors.push_back((seen.point - lamp.middle).norm());
+        outcome.shares.push_back(inSigmas(seen, lamp));
+      }
+    }
+    outcome.right += right;
+    if (!right) {
+      ++outcome.missing[remark];
+    }
+  }
+  for (size_t i = 0; i < observations.size(); ++i) {
+    outcome.wrong += !known[i] && !observations[i].id.empty();
+  }
+  return outcome;
+}
+
+Outcome tried(const vpLuminaireFamily &family, const vpHalfRealRanges &ranges, int lamps, unsigned int seed)
+{
+  Outcome all;
+  std::mutex guard;
+  const int perPicture = (ranges.fewest + ranges.most) / 2;
+  vpRunTrials((lamps + perPicture - 1) / perPicture,
+              [&](int, std::mt19937_64 &generator) {
+                vpHalfRealTrial trial = vpDrawTrial(ranges, generator);
+                vpDrawLamps(ranges, family.patterns, trial, generator);
+                vpLedDetector detector(trial.rig, trial.map);
+                detector.detect(trial.picture.render());
+                const Outcome outcome = judged(trial, detector.observations());
+                const std::lock_guard<std::mutex> lock(guard);
+                all.add(outcome);
+              },
+              seed);
+  return all;
+}
+
+double percentile(std::vector<double> values, double share)
+{
+  if (values.empty()) {
+    return std::nan("");
+  }
+  std::sort(values.begin(), values.end());
+  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+void print(const std::string &name, const Outcome &outcome)
+{
+  static const double threeSigma = 3.44; // of two coordinates: exceeded as rarely as 3 by one
+  const auto within = std::count_if(outcome.shares.begin(), outcome.shares.end(),
+                                    [](double share) { return share < threeSigma; });
+  std::printf(
+      "| %s | %d | %.1f %% | %d | %d | %.2f / %.2f / %.2f | %.1f %% |", name.c_str(), outcome.lamps,
+      100. * outcome.right / std::max(1, outcome.lamps), outcome.wrong, outcome.lamps - outcome.right,
+      percentile(outcome.errors, 0.5), percentile(outcome.errors, 0.95), percentile(outcome.errors, 1),
+      100. * static_cast<double>(within) / std::max<double>(1, static_cast<double>(outcome.shares.size())));
+  for (const auto &[remark, count] : outcome.missing) {
+    std::printf(" %s: %d;", remark.c_str(), count);
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const int lamps = argc > 1 ? std::atoi(argv[1]) : 540;
+  const std::string which = argc > 2 ? argv[2] : "all";
+  const auto seed = static_cast<unsigned int>(argc > 3 ? std::atoi(argv[3]) : 1);
+  vpHalfRealRanges ranges;
+  if (argc > 4 && std::string(argv[4]) == "phone") {
+    ranges.gamma = 2.2;
+    ranges.jpeg = 90;
+  }
+  std::cout.setstate(std::ios::failbit); // sets tell which pictures they read
+  static const int patterns = 16;        // of each drawn family
+  std::vector<vpLuminaireFamily> families;
+  if (which != "real") {
+    families = vpDrawnFamilies(patterns, seed);
+  }
+  const char *root = std::getenv("VLP_INPUT_IMAGE_PATH");
+  if (which != "drawn" && root != nullptr) {
+    const std::vector<vpLuminaireFamily> real = vpRealFamilies(root);
+    families.insert(families.end(), real.begin(), real.end());
+  }
+  std::printf(
+      "| family | lamps | right | wrong | missing | middle off, px: median / 95 %% / max | within 3 sigma "
+      "| why missing\n");
+  Outcome all;
+  for (const vpLuminaireFamily &family : families) {
+    if (which == "all" || which == "drawn" || which == "real" || which == family.name) {
+      const Outcome outcome = tried(family, ranges, lamps, seed);
+      print(family.name, outcome);
+      all.add(outcome);
+    }
+  }
+  print("all", all);
+  return 0;
+}
