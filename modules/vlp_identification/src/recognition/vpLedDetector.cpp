@@ -408,7 +408,7 @@ void vpLedDetector::shareExposure(const vpLinePicture &picture, const std::vecto
   for (const vpLampObservation &lamp : m_observations) {
     m_exposure.add(lamp.features);
   }
-  static const double better = 0.7, clearly = 3, open = 0.05; // share; standard deviations; duty
+  static const double better = 0.7, clearly = 1, open = 0.05; // share; standard deviations; duty
   if (!(m_exposure.logSigma() < better * before)) {
     return;
   }
