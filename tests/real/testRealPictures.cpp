@@ -45,15 +45,19 @@ double deviation(const std::vector<double> &values)
 const std::vector<double> claims = {10e-6, 20e-6, 30e-6, 45e-6, 60e-6, 80e-6, 100e-6, 130e-6, 160e-6};
 
 //! Right ids in all pictures of a set whatever exposure is claimed; no region has another's. \param within
-//! px, that a lamp's centre is noted to.
-void expectAllIds(RealSet &set, double within)
+//! px, that a lamp's centre is noted to. \param nothingElse No other region is found.
+void expectAllIds(RealSet &set, double within, bool nothingElse = false)
 {
   for (const YAML::Node &image : set.images()) {
     const vpVlpFrame frame = set.frame(image);
     for (double claim : claims) {
       SCOPED_TRACE("exposure claimed " + std::to_string(1e6 * claim) + " us");
       vpVlpLocalizer localizer(set.rig(image, frame, claim), set.map());
-      set.expectIds(image, localizer.process(frame).observations, within);
+      const vpVlpLocation location = localizer.process(frame);
+      set.expectIds(image, location.observations, within);
+      if (nothingElse) {
+        EXPECT_EQ(location.observations.size(), set.lampsIn(image)) << frame.name;
+      }
     }
   }
 }
@@ -61,7 +65,7 @@ void expectAllIds(RealSet &set, double within)
 TEST(Ub300, EveryIdWhateverExposureIsClaimed)
 {
   VLP_REAL_SET(set, "ub300");
-  expectAllIds(set, 1.5);
+  expectAllIds(set, 1.5, true);
 }
 
 TEST(LumiaRoom, EveryIdWhateverExposureIsClaimed)

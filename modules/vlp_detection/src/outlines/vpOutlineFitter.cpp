@@ -118,7 +118,7 @@ void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines,
   if (weight > 0) {
     outline.centre = sum / weight;
   }
-  static const Eigen::Vector2d doubt(0.08, 0.12); // share of the radius, standard deviation
+  static const Eigen::Vector2d doubt(0.04, 0.06); // share of the radius, standard deviation
   outline.centreCovariance = (0.5 * outline.diameter() * doubt).cwiseAbs2().asDiagonal();
 }
 
