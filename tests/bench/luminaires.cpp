@@ -5,12 +5,13 @@
 // Which ids the detector reads off luminaires of many emission patterns, drawn and taken off real pictures,
 // and how far off their middles are: the table of BENCHMARK.md.
 //
-// bench_luminaires [LAMPS of each family] [FAMILY|all|drawn|real] [SEED] [linear|phone] (540 all 1 linear).
-// Real families need VLP_INPUT_IMAGE_PATH. A phone's pictures have a tone curve of 2.2 and are JPEGs of
-// quality 90.
+// bench_luminaires [LAMPS of each family] [FAMILY|all|drawn|real] [SEED] [linear|phone] [FOLDER]
+// (540 all 1 linear). Real families need VLP_INPUT_IMAGE_PATH. A phone's pictures have a tone curve of 2.2
+// and are JPEGs of quality 90. A folder gets rig, map and picture of each trial that is not all right.
 
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include <Eigen/LU>
+#include <opencv2/imgcodecs.hpp>
 #include <visp3/vlp_identification/vpLedDetector.h>
 
 #include "luminaires/vpHalfRealTrial.h"
@@ -25,11 +27,19 @@
 
 namespace
 {
+const double threeSigma = 3.44; // of two coordinates: exceeded as rarely as 3 by one
+
 //! What became of the lamps of a family.
 struct Outcome {
   int lamps = 0, right = 0, wrong = 0;
   std::map<std::string, int> missing; // by remark
   std::vector<double> errors, shares; // of middles, px; of their standard deviations
+
+  bool good() const
+  {
+    return right == lamps && wrong == 0 &&
+           std::all_of(shares.begin(), shares.end(), [](double share) { return share < threeSigma; });
+  }
 
   void add(const Outcome &other)
   {
@@ -100,18 +110,40 @@ Outcome judged(const vpHalfRealTrial &trial, const std::vector<vpLampObservation
   return outcome;
 }
 
-Outcome tried(const vpLuminaireFamily &family, const vpHalfRealRanges &ranges, int lamps, unsigned int seed)
+//! What vp-locate needs to show the trial, named by the family and a number.
+void keep(const vpHalfRealTrial &trial, const vpImage<unsigned char> &I, const std::string &name)
+{
+  trial.rig.save(name + "-rig.yaml");
+  trial.map.save(name + "-lamps.yaml");
+  cv::imwrite(name + ".png",
+              cv::Mat(static_cast<int>(I.getHeight()), static_cast<int>(I.getWidth()), CV_8U, I.bitmap));
+  std::ofstream truth(name + ".csv");
+  for (const vpHalfRealLamp &lamp : trial.picture.lamps) {
+    truth << lamp.id << "," << lamp.middle.x() << "," << lamp.middle.y() << "," << lamp.diameter << ","
+          << lamp.lines() << "," << lamp.modulation.frequency << "," << *lamp.modulation.duty << ","
+          << lamp.level << "," << lamp.modulation.frequency * trial.picture.rowTime << ","
+          << lamp.modulation.frequency * trial.picture.exposure << ","
+          << trial.rig.shutter.exposure / trial.picture.exposure << "\n";
+  }
+}
+
+Outcome tried(const vpLuminaireFamily &family, const vpHalfRealRanges &ranges, int lamps, unsigned int seed,
+              const std::string &folder)
 {
   Outcome all;
   std::mutex guard;
   const int perPicture = (ranges.fewest + ranges.most) / 2;
   vpRunTrials((lamps + perPicture - 1) / perPicture,
-              [&](int, std::mt19937_64 &generator) {
+              [&](int number, std::mt19937_64 &generator) {
                 vpHalfRealTrial trial = vpDrawTrial(ranges, generator);
                 vpDrawLamps(ranges, family.patterns, trial, generator);
                 vpLedDetector detector(trial.rig, trial.map);
-                detector.detect(trial.picture.render());
+                const vpImage<unsigned char> I = trial.picture.render();
+                detector.detect(I);
                 const Outcome outcome = judged(trial, detector.observations());
+                if (!folder.empty() && !outcome.good()) {
+                  keep(trial, I, folder + "/" + family.name + std::to_string(number));
+                }
                 const std::lock_guard<std::mutex> lock(guard);
                 all.add(outcome);
               },
@@ -130,7 +162,6 @@ double percentile(std::vector<double> values, double share)
 
 void print(const std::string &name, const Outcome &outcome)
 {
-  static const double threeSigma = 3.44; // of two coordinates: exceeded as rarely as 3 by one
   const auto within = std::count_if(outcome.shares.begin(), outcome.shares.end(),
                                     [](double share) { return share < threeSigma; });
   std::printf(
@@ -173,7 +204,7 @@ int main(int argc, char **argv)
   Outcome all;
   for (const vpLuminaireFamily &family : families) {
     if (which == "all" || which == "drawn" || which == "real" || which == family.name) {
-      const Outcome outcome = tried(family, ranges, lamps, seed);
+      const Outcome outcome = tried(family, ranges, lamps, seed, argc > 5 ? argv[5] : "");
       print(family.name, outcome);
       all.add(outcome);
     }

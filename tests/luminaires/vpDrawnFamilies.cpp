@@ -45,6 +45,8 @@ vpEmissionPattern draw(const std::string &name, bool square, const Light &light)
   pattern.light /= static_cast<float>(most);
   pattern.middle = Eigen::Vector2d::Constant(0.5 * (side - 1));
   pattern.square = square;
+  const cv::Rect lit = cv::boundingRect(fine > 0);
+  pattern.lit = Eigen::Vector2d(lit.width, lit.height) / cells;
   pattern.diameter = square ? size * std::sqrt(4 / M_PI) : size;
   return pattern;
 }

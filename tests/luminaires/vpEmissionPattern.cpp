@@ -185,6 +185,7 @@ vpEmissionPattern vpTakePattern(const vpStripedLamp &lamp)
   pattern.middle = lamp.middle - Eigen::Vector2d(corner.x, corner.y);
   pattern.light /= static_cast<float>(brightest);
   pattern.diameter = 2 * outlineRadius(pattern);
+  pattern.lit = Eigen::Vector2d::Constant(pattern.diameter);
   mask(pattern);
   double most = 0;
   cv::minMaxLoc(pattern.light, nullptr, &most);

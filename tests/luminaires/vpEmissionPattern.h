@@ -27,9 +27,10 @@ struct vpEmissionPattern {
   cv::Mat_<float> light; // share of the brightest pixel's, 0 to 1
   //! px of `light`, the centre of the lamp's outline. Of a real lamp: the hand-measured one.
   Eigen::Vector2d middle = {0, 0};
-  double middleSigma = 0; // px of `light`, standard deviation of each coordinate of the middle
-  double diameter = 0;    // px of `light`, of a disc of the outline's area
-  bool square = false;    // the outline is a square, a disc otherwise
+  double middleSigma = 0;       // px of `light`, standard deviation of each coordinate of the middle
+  double diameter = 0;          // px of `light`, of a disc of the outline's area
+  Eigen::Vector2d lit = {0, 0}; // px of `light`, width and height of what shines of the outline
+  bool square = false;          // the outline is a square, a disc otherwise
 };
 
 //! Patterns of one kind, among which the half-real pictures of a family choose.

@@ -77,7 +77,7 @@ Eigen::Matrix2d vpHalfRealLamp::warp() const
 
 double vpHalfRealLamp::lines() const
 {
-  return warp().row(1).norm() * pattern->diameter;
+  return (warp().row(1).transpose().cwiseProduct(pattern->lit)).norm();
 }
 
 double vpHalfRealLamp::reach() const

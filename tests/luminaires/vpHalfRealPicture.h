@@ -39,7 +39,7 @@ struct vpHalfRealLamp {
 
   //! px of the picture, standard deviation of each coordinate of the middle: as good as the pattern's own.
   double middleSigma() const { return pattern->middleSigma * diameter / pattern->diameter; }
-  //! Length of the outline's box along v, lines. Of a square: of the disc of its area.
+  //! Lines that show it: length along v of the ellipse that touches the four sides of what is lit.
   double lines() const;
   //! The matrix that takes pattern pixels about the pattern's middle to picture pixels about \e middle.
   Eigen::Matrix2d warp() const;

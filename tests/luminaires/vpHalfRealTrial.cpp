@@ -90,6 +90,26 @@ bool touches(const vpHalfRealLamp &one, const vpHalfRealLamp &other)
   return (one.middle - other.middle).norm() < 0.5 * glow * (one.diameter + other.diameter);
 }
 
+//! Turns and tilts the lamp, and draws its size among those that show enough periods and lines. False: none
+//! does.
+bool turn(vpHalfRealLamp &lamp, const vpHalfRealRanges &ranges, double rowTime, std::mt19937_64 &generator)
+{
+  const double least =
+      std::max(ranges.shortest, ranges.periods / (lamp.modulation.repetitionFrequency() * rowTime));
+  for (int attempt = 0; attempt < 200; ++attempt) {
+    lamp.angle = even(-M_PI, M_PI, generator);
+    lamp.tilt = even(0, ranges.tilt, generator);
+    lamp.tiltAxis = even(-M_PI, M_PI, generator);
+    lamp.diameter = 1;
+    const double smallest = std::max(ranges.shortest, least / lamp.lines());
+    if (smallest <= ranges.longest) {
+      lamp.diameter = logEven(smallest, ranges.longest, generator);
+      return true;
+    }
+  }
+  return false;
+}
+
 //! Finds the lamp a place among the others. False: there is none.
 bool place(vpHalfRealLamp &lamp, const vpHalfRealPicture &picture, std::mt19937_64 &generator)
 {
@@ -159,13 +179,9 @@ void vpDrawLamps(const vpHalfRealRanges &ranges, const std::vector<vpEmissionPat
     lamp.modulation = known->modulation;
     lamp.rate = 1 + 1e-6 * known->oscillatorPpm * std::normal_distribution<double>()(generator);
     lamp.phase = even(0, 1, generator);
-    lamp.angle = even(-M_PI, M_PI, generator);
-    lamp.tilt = even(0, ranges.tilt, generator);
-    lamp.tiltAxis = even(-M_PI, M_PI, generator);
-    lamp.diameter = 1;
-    const double least = ranges.periods / (known->modulation.repetitionFrequency() * picture.rowTime);
-    lamp.diameter = logEven(std::min(ranges.longest, std::max(ranges.shortest, least / lamp.lines())),
-                            ranges.longest, generator);
+    if (!turn(lamp, ranges, picture.rowTime, generator)) {
+      continue;
+    }
     // The grey level after the tone curve is what is drawn.
     const double level = even(ranges.leastLevel, ranges.mostLevel, generator);
     lamp.level = 255 * std::pow(level / 255, picture.gamma);

@@ -19,8 +19,8 @@ struct vpHalfRealRanges {
   int lampsOfMap = 5, fewest = 3, most = 5;            // lamps of a map, and of one picture of it
   double lowest = 1000, highest = 5000;                // Hz, by the logarithm
   double apart = 1.1;                                  // least ratio of two frequencies of the map
-  double periods = 4;                                  // least number of them over a lamp
-  double shortest = 40, longest = 200;                 // px, diameter, by the logarithm
+  double periods = 4;                                  // least number of them over what is lit of a lamp
+  double shortest = 40, longest = 200;                 // px, diameter, by the logarithm; lines of what is lit
   double tilt = 0.6;                                   // rad, largest
   double leastDuty = 0.2, mostDuty = 0.8;              //
   double dutyStated = 0.5;                             // probability that the map states it
