@@ -389,7 +389,7 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
     return features;
   }
   // What the lines' means hide the columns may agree on.
-  vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, roi);
+  vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
   agreed.exposure = m_exposure.exposure();
   agreed.logExposureSigma = m_exposure.logSigma();
   const vpStripeFeatures other = stripeAnalyzer.analyze(agreed);

@@ -44,7 +44,7 @@ struct VISP_EXPORT vpStripeProfile {
     too narrow, or dark for longer than such a lamp is.
   */
   static vpStripeProfile agreedByColumns(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
-                                         const vpLedRoi &roi);
+                                         const vpOutlineFit &fit, const vpLedRoi &roi);
 };
 
 //! How the words of a map's lamps are sent: what is known of a word before its chips are.
