@@ -154,6 +154,8 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
   int sparse = steps.sparse;
   static const double many = 12; // ends, of all directions by chance alone
   int soft = 0;
+  typename Model::Vector latest = Model::Vector::Zero();
+  double share = 1; // of a step that is taken
   for (int i = 0; i < steps.most; ++i) {
     m_some = i < sparse;
     m_litOnly = steps.litOnly || m_some;
@@ -188,8 +190,12 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
     if (longest > limit) {
       step *= limit / longest;
     }
-    const typename Model::Vector outlineStep =
-        step.template head<Model::parameters>().cwiseMax(-limit).cwiseMin(limit);
+    // Lines that come into view as the outline moves, and go again, would send it to and fro.
+    static const int settled = 8; // steps
+    const typename Model::Vector wanted = step.template head<Model::parameters>();
+    share *= i > settled && wanted.dot(latest) < 0 ? 0.5 : 1;
+    latest = wanted;
+    const typename Model::Vector outlineStep = share * wanted.cwiseMax(-limit).cwiseMin(limit);
     m_model.advance(outlineStep);
     const double before = m_blur, shadingBefore = m_shading;
     static const double close = 0.3; // px: from farther off amplitudes are not yet the light's

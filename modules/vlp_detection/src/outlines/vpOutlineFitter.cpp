@@ -11,6 +11,7 @@
 
 #include "regions/vpChordShape.h"
 #include "vpEdgeFit.h"
+#include "vpRimFit.h"
 #include <visp3/vlp_core/vpBrighter.h>
 
 BEGIN_VISP_NAMESPACE
@@ -332,6 +333,14 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     }
   }
   const bool cut = roi.cutAcross || roi.cutAlong;
+  const bool sound = best.outline.shape != vpLampOutline::Shape::region && isSharp(best) &&
+                     (best.outline.shape == vpLampOutline::Shape::quadrilateral || even ||
+                      (ellipse.prior() < rare && ellipse.kept() > nearlyPerfect));
+  if (!cut && !sound) {
+    if (const auto rim = vpRimFit::of(lines, roi)) {
+      return *rim;
+    }
+  }
   const bool sided = best.outline.shape == vpLampOutline::Shape::quadrilateral;
   if (cut && (!even || (sided && !showsSides(best.outline, lines.size())))) {
     best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle

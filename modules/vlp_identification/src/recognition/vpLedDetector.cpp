@@ -385,7 +385,9 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   profile.exposure = m_exposure.exposure();
   profile.logExposureSigma = m_exposure.logSigma();
   const vpStripeFeatures features = stripeAnalyzer.analyze(profile);
-  if (vpLedIdEvidence::tells(features) || features.modulation < stripeAnalyzer.minModulation) {
+  static const double explained = 0.01; // misfit
+  const bool tells = vpLedIdEvidence::tells(features);
+  if ((tells && features.misfit < explained) || features.modulation < stripeAnalyzer.minModulation) {
     return features;
   }
   // What the lines' means hide the columns may agree on.
@@ -395,7 +397,9 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   const vpStripeFeatures other = stripeAnalyzer.analyze(agreed);
   // Any texture has two shades that some columns agree on.
   static const unsigned int few = 3;
-  return other.stripes >= few && vpLedIdEvidence::tells(other) ? other : features;
+  return other.stripes >= few && vpLedIdEvidence::tells(other) && (!tells || other.misfit < features.misfit)
+             ? other
+             : features;
 }
 
 /*!

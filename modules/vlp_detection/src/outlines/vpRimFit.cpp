@@ -1,0 +1,166 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpRimFit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <visp3/vlp_core/vpBrighter.h>
+
+#include "regions/vpChordHull.h"
+#include "regions/vpChordShape.h"
+#include "vpOutlineModel.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! One of two shapes through the ends.
+struct Shape {
+  vpLampOutline outline;
+  double misfit = 0; // px, root mean square
+
+  double radius() const { return 0.5 * outline.diameter(); }
+};
+
+//! The stretch of each line that is brighter than \e level, to a part of a sample; its two ends.
+std::vector<cv::Point2f> endsAt(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi, double level)
+{
+  std::vector<cv::Point2f> ends;
+  for (const vpLedChord &chord : roi.chords) {
+    const unsigned char *row = lines[chord.line];
+    int first = chord.first, last = chord.last;
+    while (first <= last && row[first] <= level) {
+      ++first;
+    }
+    while (last > first && row[last] <= level) {
+      --last;
+    }
+    auto crossing = [&](int inside, int outside) {
+      const double above = row[inside] - level, below = level - row[outside];
+      return static_cast<float>(inside + (outside - inside) * above / std::max(above + below, 1.0));
+    };
+    if (first < last && first > 0 && last + 1 < lines.cols) {
+      ends.emplace_back(crossing(first, first - 1), static_cast<float>(chord.line));
+      ends.emplace_back(crossing(last, last + 1), static_cast<float>(chord.line));
+    }
+  }
+  return ends;
+}
+
+//! Of the ends, those that are not far inside their hull.
+std::vector<cv::Point2f> rimOf(const std::vector<cv::Point2f> &ends, const cv::Rect &box)
+{
+  static const double share = 0.02, least = 1; // of the size; px
+  return vpChordHull::nearIt(
+      ends, vpChordHull::of(ends),
+      static_cast<float>(std::max(least, share * std::max(box.width, box.height))));
+}
+
+std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim, const cv::Rect &box)
+{
+  static const size_t fewest = 8;
+  if (rim.size() < fewest) {
+    return std::nullopt;
+  }
+  const double ellipse = vpChordShape::ellipseMisfit(rim, box), sides = vpChordShape::rectangleMisfit(rim);
+  if (sides < ellipse) {
+    const vpQuadrilateralModel model = vpQuadrilateralModel::from(rim);
+    return Shape{model.outline(Eigen::MatrixXd::Zero(vpQuadrilateralModel::parameters,
+                                                     vpQuadrilateralModel::parameters)),
+                 sides};
+  }
+  return Shape{vpEllipseModel::from(rim, box).outline(
+                   Eigen::MatrixXd::Zero(vpEllipseModel::parameters, vpEllipseModel::parameters)),
+               ellipse};
+}
+
+//! Median of the samples a little outside the ends.
+double backgroundOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  std::vector<unsigned char> outside;
+  const int away = 3 + roi.box.width / 20;
+  for (const vpLedChord &chord : roi.chords) {
+    for (const int x : {chord.first - away, chord.last + away}) {
+      if (x >= 0 && x < lines.cols) {
+        outside.push_back(lines(chord.line, x));
+      }
+    }
+  }
+  if (outside.empty()) {
+    return roi.level;
+  }
+  const auto middle = outside.begin() + static_cast<long>(outside.size() / 2);
+  std::nth_element(outside.begin(), middle, outside.end());
+  return std::min<double>(*middle, roi.level);
+}
+} // namespace
+
+std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels, const cv::Rect &box,
+                                                 size_t &chosen)
+{
+  static const double far = 0.06, px = 0.5; // misfit, share of the radius, and what samples add
+  static const double independent = 4;      // ends, of as many as there are
+  std::vector<std::optional<Shape>> shapes;
+  for (const Ends &ends : levels) {
+    shapes.push_back(nearest(rimOf(ends, box), box));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  std::optional<vpOutlineFit> best;
+  for (size_t k = 0; k < shapes.size(); ++k) {
+    if (!shapes[k] || shapes[k]->misfit > far * shapes[k]->radius() + px) {
+      continue;
+    }
+    const Shape &shape = *shapes[k];
+    Eigen::Vector2d apart = Eigen::Vector2d::Zero();
+    double change = 0.5 * shape.radius(); // of the highest level
+    if (k + 1 < shapes.size() && shapes[k + 1]) {
+      apart = shapes[k + 1]->outline.centre - shape.outline.centre;
+      change = std::hypot(shapes[k + 1]->radius() - shape.radius(), apart.norm());
+    }
+    const double unknown = std::hypot(change, shape.misfit) / shape.radius();
+    if (unknown < least) {
+      least = unknown;
+      chosen = k;
+      best.emplace();
+      best->outline = shape.outline;
+      best->blur = std::hypot(change, shape.misfit);
+      best->outline.centreCovariance =
+          (change * change + shape.misfit * shape.misfit) / independent * Eigen::Matrix2d::Identity() +
+          apart * apart.transpose();
+    }
+  }
+  return best;
+}
+
+std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+{
+  const double background = backgroundOf(lines, roi);
+  double brightest = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    brightest = std::max<double>(
+        brightest, vpBrighter::brightest(lines[chord.line] + chord.first, chord.last - chord.first + 1));
+  }
+  std::vector<Ends> levels;
+  static const double most = 0.5; // share of the brightest light
+  for (double light = std::max(1.0, roi.level - background); light < most * (brightest - background);
+       light *= levelRatio) {
+    levels.push_back(endsAt(lines, roi, background + light));
+  }
+  size_t chosen = 0;
+  std::optional<vpOutlineFit> fit = mostStable(levels, roi.box, chosen);
+  if (fit) {
+    fit->background = background;
+    if (fit->outline.shape == vpLampOutline::Shape::quadrilateral) { // a side along the lines may lie in the dark
+      const double gap = vpChordShape::longestGap(roi);
+      fit->outline.centreCovariance(1, 1) += gap * gap / 24;
+    }
+  }
+  return fit;
+}
+
+END_VISP_NAMESPACE
