@@ -314,6 +314,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     addElongationDoubt(best.outline, roi, ellipse.prior());
   }
   bool even = evenness > evenEdge;
+  double kept = isEllipse ? ellipse.kept() : 0, edges = evenness; // of what is taken at last
   static const double round = 0.015; // share of the radius: no rectangle is that near to an ellipse
   const bool maySquare = !even || ellipseMisfit > round * start.radius();
   const double sidesMisfit =
@@ -325,7 +326,13 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
         holds(sides.result(), roi)) {
       if (even) {
         best = likelier(ellipse, sides);
+        if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
+          kept = sides.kept();
+          edges = sides.evenness();
+        }
       } else {
+        kept = sides.kept();
+        edges = sides.evenness();
         best = sides.result();
         best.outline.otherShape = 0; // no ellipse fits at all
       }
@@ -336,6 +343,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   const bool sound = best.outline.shape != vpLampOutline::Shape::region && isSharp(best) &&
                      (best.outline.shape == vpLampOutline::Shape::quadrilateral || even ||
                       (ellipse.prior() < rare && ellipse.kept() > nearlyPerfect));
+  best.sound = sound && kept >= nearlyPerfect && edges >= alone;
   if (!cut && !sound) {
     if (const auto rim = vpRimFit::of(lines, roi)) {
       return *rim;

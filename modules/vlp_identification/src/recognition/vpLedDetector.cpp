@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <sstream>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include <visp3/core/vpRect.h>
 #include <visp3/vlp_identification/vpLedIdEvidence.h>
 
+#include "vpSeenRegion.h"
 #include "stripes/vpLampGlance.h"
 #include "stripes/vpSteadyLight.h"
 #include <visp3/vlp_core/vpBrighter.h>
@@ -86,30 +86,6 @@ std::vector<cv::Rect> joined(std::vector<cv::Rect> rects)
   return rects;
 }
 
-//! Both regions as one: on each line from the first to the last lit sample.
-vpLedRoi joined(const vpLedRoi &a, const vpLedRoi &b)
-{
-  std::map<int, vpLedChord> chords;
-  for (const vpLedRoi *roi : {&a, &b}) {
-    for (const vpLedChord &chord : roi->chords) {
-      vpLedChord &whole = chords.emplace(chord.line, chord).first->second;
-      whole.first = std::min(whole.first, chord.first);
-      whole.last = std::max(whole.last, chord.last);
-    }
-  }
-  vpLedRoi roi = a;
-  roi.chords.clear();
-  for (const auto &[line, chord] : chords) {
-    roi.chords.push_back(chord);
-  }
-  roi.box |= b.box;
-  roi.level = std::min(a.level, b.level);
-  roi.lampness = std::max(a.lampness, b.lampness);
-  roi.cutAcross = a.cutAcross || b.cutAcross;
-  roi.cutAlong = a.cutAlong || b.cutAlong;
-  return roi;
-}
-
 //! Lit pixels of a region, and the share of them at the end of the grey scale.
 void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObservation &lamp)
 {
@@ -144,43 +120,6 @@ void doubtClipped(vpLampObservation &lamp)
   for (vpDutySlice &slice : features.alongDuty) {
     slice.frequencySigma *= times;
   }
-}
-
-//! Whether two regions blink as one lamp of the map.
-bool alike(const vpLampObservation &a, const vpLampObservation &b)
-{
-  return !a.candidates.empty() && !b.candidates.empty() &&
-         a.candidates.front().identifier == b.candidates.front().identifier;
-}
-
-//! Whether a region blinks, but too few of its stripes are seen to say how.
-bool blinksSomehow(const vpLampObservation &lamp)
-{
-  return lamp.features.signal != vpStripeFeatures::Signal::unmodulated &&
-         !vpLedIdEvidence::tells(lamp.features);
-}
-
-cv::Rect2d boxOf(const vpLampOutline &outline)
-{
-  const Eigen::Vector4d box = outline.box();
-  return {box(0), box(1), box(2) - box(0), box(3) - box(1)};
-}
-
-/*!
-  Whether a region shows what another one shows better: it led to the same outline, or blinks alike and has
-  its middle in the other.
-*/
-bool isPartOf(const vpLampObservation &part, const vpLampObservation &whole)
-{
-  const vpLampOutline &a = part.outline, &b = whole.outline;
-  if (a.shape == vpLampOutline::Shape::region || b.shape == vpLampOutline::Shape::region ||
-      a.centreCovariance.trace() < b.centreCovariance.trace()) {
-    return false;
-  }
-  static const double most = 0.7; // of both together that they have in common
-  const cv::Rect2d box = boxOf(a), other = boxOf(b);
-  return (a.shape == b.shape && (box & other).area() > most * (box | other).area()) ||
-         (alike(part, whole) && other.contains({a.centre.x(), a.centre.y()}));
 }
 
 //! How the map's words are sent, each way once.
@@ -308,17 +247,15 @@ void vpLedDetector::place(vpLampObservation &lamp, const vpOutlineFit &fit, bool
 //! All that follows from the regions.
 bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois)
 {
-  m_observations.clear();
-  m_fits.clear();
+  std::vector<Region> regions;
   for (const vpLedRoi &roi : rois) {
-    m_observations.push_back(observe(picture, roi));
+    regions.push_back(observe(picture, roi));
   }
-  shareExposure(picture, rois);
-  m_rowTimeError = recognizer.recognize(m_observations);
-  if (joinPieces(picture, rois)) {
-    m_rowTimeError = recognizer.recognize(m_observations);
-  }
-  for (vpLampObservation &lamp : m_observations) {
+  shareExposure(picture, regions);
+  complete(picture, regions);
+  recognise(regions);
+  for (Region &region : regions) {
+    vpLampObservation &lamp = region.lamp;
     if (lamp.outline.shape == vpLampOutline::Shape::region && !lamp.candidates.empty()) {
       lamp.id.clear();
       lamp.candidates.clear();
@@ -326,56 +263,31 @@ bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> 
       lamp.remark = "blinks as a lamp of the map, but has no outline of one";
     }
   }
-  std::stable_sort(m_observations.begin(), m_observations.end(),
-                   [](const vpLampObservation &a, const vpLampObservation &b) {
-                     return a.features.area > b.features.area;
-                   });
-
+  std::stable_sort(regions.begin(), regions.end(), [](const Region &a, const Region &b) {
+    return a.lamp.features.area > b.lamp.features.area;
+  });
+  m_observations.clear();
   m_polygon.clear();
   m_message.clear();
-  for (const vpLampObservation &lamp : m_observations) {
-    m_polygon.push_back(cornersOf(lamp.outline));
-    m_message.push_back(lamp.id);
+  for (const Region &region : regions) {
+    m_observations.push_back(region.lamp);
+    m_polygon.push_back(cornersOf(region.lamp.outline));
+    m_message.push_back(region.lamp.id);
   }
   m_nb_objects = m_observations.size();
   return m_nb_objects > 0;
 }
 
-/*!
-  Regions that touch and blink as one lamp are pieces of it: a glow has no outline that would say so. Of a
-  lamp that was found in both, that which is known better stays.
-*/
-bool vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois)
+void vpLedDetector::recognise(std::vector<Region> &regions)
 {
-  bool any = false;
-  for (size_t i = 0; i < rois.size(); ++i) {
-    for (size_t k = i + 1; k < rois.size(); ++k) {
-      vpLampObservation &one = m_observations[i], &other = m_observations[k];
-      vpLedRoi both;
-      vpLampObservation whole;
-      const bool pieces = alike(one, other) || (blinksSomehow(one) && !other.candidates.empty()) ||
-                          (blinksSomehow(other) && !one.candidates.empty());
-      if (pieces && (rois[i].box & rois[k].box).area() > 0) {
-        both = joined(rois[i], rois[k]);
-        whole = observe(picture, both);
-        recognizer.recognize(whole);
-      }
-      if (alike(whole, one) || alike(whole, other)) {
-        rois[i] = both;
-        one = whole;
-      } else if (isPartOf(one, other)) {
-        std::swap(one, other);
-        std::swap(rois[i], rois[k]);
-      } else if (!isPartOf(other, one)) {
-        continue;
-      }
-      any = true;
-      rois.erase(rois.begin() + static_cast<long>(k));
-      m_observations.erase(m_observations.begin() + static_cast<long>(k));
-      --k;
-    }
+  std::vector<vpLampObservation> lamps;
+  for (const Region &region : regions) {
+    lamps.push_back(region.lamp);
   }
-  return any;
+  m_rowTimeError = recognizer.recognize(lamps);
+  for (size_t i = 0; i < regions.size(); ++i) {
+    regions[i].lamp = lamps[i];
+  }
 }
 
 vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
@@ -406,58 +318,68 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   What the lamps say of the exposure together: those whose stripes said otherwise, or left the duty open, are
   read again with it.
 */
-void vpLedDetector::shareExposure(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois)
+void vpLedDetector::shareExposure(const vpLinePicture &picture, std::vector<Region> &regions)
 {
   const double before = m_exposure.logSigma();
-  for (const vpLampObservation &lamp : m_observations) {
-    m_exposure.add(lamp.features);
+  for (const Region &region : regions) {
+    m_exposure.add(region.lamp.features);
   }
   static const double better = 0.7, clearly = 1, open = 0.05; // share; standard deviations; duty
   if (!(m_exposure.logSigma() < better * before)) {
     return;
   }
-  for (size_t i = 0; i < rois.size(); ++i) {
-    vpLampObservation &lamp = m_observations[i];
-    const vpStripeFeatures &seen = lamp.features;
+  for (Region &region : regions) {
+    const vpStripeFeatures &seen = region.lamp.features;
     if (seen.signal == vpStripeFeatures::Signal::unmodulated) {
       continue;
     }
     const double off = std::abs(std::log(seen.exposure / m_exposure.exposure()));
     if (!(off < clearly * m_exposure.logSigma()) || !(seen.dutySigma < open) ||
         !(seen.frequencySigma < seen.frequency)) {
-      const double area = seen.area;
-      lamp.features = stripesOf(picture, m_fits[i], rois[i]);
-      lamp.features.area = area;
-      doubtClipped(lamp);
+      read(picture, region);
     }
   }
 }
 
-vpLampObservation vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
+vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
 {
-  vpLampObservation lamp;
+  Region region;
+  region.roi = roi;
   const bool steady = skipSteady && vpDeepestDip(picture.grey, roi) < stripeAnalyzer.minModulation;
-  const vpOutlineFit fit = steady ? vpOutlineFitter::boxOf(roi)
-                                  : outlineFitter.fit(picture.grey, m_timing.linePositions(),
-                                                      m_timing.samplePositions(), roi, m_blur);
-  if (fit.outline.shape == vpLampOutline::Shape::ellipse) {
-    m_blur = fit.blur;
+  region.fit = steady ? vpOutlineFitter::boxOf(roi)
+                      : outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(),
+                                          roi, m_blur);
+  if (region.fit.outline.shape == vpLampOutline::Shape::ellipse) {
+    m_blur = region.fit.blur;
   }
   if (!steady) {
-    lamp.features = stripesOf(picture, fit, roi);
+    read(picture, region);
   }
-  m_fits.push_back(fit);
-  measureArea(picture, roi, lamp);
-  doubtClipped(lamp);
-  place(lamp, fit, picture.transposed);
-  lamp.cut = roi.cutAcross || roi.cutAlong;
+  locate(picture, region);
+  return region;
+}
+
+//! What a region's stripes say.
+void vpLedDetector::read(const vpLinePicture &picture, Region &region) const
+{
+  region.lamp.features = stripesOf(picture, region.fit, region.roi);
+  measureArea(picture, region.roi, region.lamp);
+  doubtClipped(region.lamp);
+}
+
+//! Where a region's lamp is.
+void vpLedDetector::locate(const vpLinePicture &picture, Region &region) const
+{
+  vpLampObservation &lamp = region.lamp;
+  measureArea(picture, region.roi, lamp);
+  place(lamp, region.fit, picture.transposed);
+  lamp.cut = region.roi.cutAcross || region.roi.cutAlong;
   // Of a lamp of which less than half is seen longer and shorter ellipses fit about as well, the less of it
   // the more.
-  const Eigen::Vector2d &centre = fit.outline.centre;
+  const Eigen::Vector2d &centre = region.fit.outline.centre;
   const Eigen::Vector2d last(picture.grey.cols - 1, picture.grey.rows - 1);
   const double outside = (centre - centre.cwiseMin(last).cwiseMax(Eigen::Vector2d::Zero())).norm();
   lamp.covariance += outside * outside * Eigen::Matrix2d::Identity();
-  return lamp;
 }
 
 END_VISP_NAMESPACE

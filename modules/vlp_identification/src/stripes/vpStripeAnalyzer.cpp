@@ -185,7 +185,8 @@ std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, Start &
   return best;
 }
 
-void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
+//! \param middle s, of the profile, after the start of the frame.
+void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse, double middle)
 {
   using P = vpWaveformFit;
   features.signal = twoPulse ? vpStripeFeatures::Signal::twoPulse : vpStripeFeatures::Signal::pwm;
@@ -195,6 +196,8 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse)
   features.frequencyNoise = fit.frequencyNoise();
   features.duty = fit.value(P::duty);
   features.dutySigma = fit.sigma(P::duty);
+  features.phase = fit.value(P::phase) - middle * features.frequency;
+  features.phase -= std::floor(features.phase);
   features.exposure = fit.value(P::exposure);
   features.exposureSigma = fit.sigma(P::exposure);
   features.misfit = fit.misfit();
@@ -256,7 +259,7 @@ void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Fou
   features.frequency = features.frequencySigma = features.frequencyBound = none;
   features.duty = features.dutySigma = none;
   features.alongDuty.clear();
-  features.phaseDifference = features.phaseDifferenceSigma = none;
+  features.phaseDifference = features.phaseDifferenceSigma = features.phase = none;
   features.exposure = features.exposureSigma = none;
   if (found) {
     features.chips = vpWordFit::canonical(found->word.chips);
@@ -330,6 +333,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     return features;
   }
   features.misfit = 1; // where no pulses explain anything
+  const auto [earliest, latest] = std::minmax_element(profile.time.begin(), profile.time.end());
+  const double middle = 0.5 * (*earliest + *latest);
   Start *start = &byAll;
   std::optional<Start> byPeriod;
   std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
@@ -357,7 +362,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   if (pwm) {
     pwm->integrate();
-    take(features, *pwm, false);
+    take(features, *pwm, false, middle);
     if (pwm->hidesDuty()) {
       features.alongDuty = pwm->alongDuty();
       vpDutyRidge::settle(features);
@@ -376,7 +381,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     if (two && two->misfit() < maxMisfit &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
       two->integrate();
-      take(features, *two, true);
+      take(features, *two, true, middle);
     }
   }
   widen(features, profile, start->pulses.has_value());

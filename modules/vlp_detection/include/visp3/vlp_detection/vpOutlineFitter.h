@@ -20,6 +20,7 @@ struct VISP_EXPORT vpOutlineFit {
   double blur = 0;       // px, standard deviation of the edge's spread
   double background = 0; // grey value just outside the lamp, median over its edge
   double noise = 0;      // grey levels, standard deviation of pixels about the fit, median over the edge
+  bool sound = false;    // sharp, and as bright along all of its edge as inside: that of an evenly lit lamp
 };
 
 /*!

@@ -81,12 +81,18 @@ public:
   const vpExposureEvidence &exposure() const { return m_exposure; }
 
 private:
+  struct Region;
   bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
-  bool joinPieces(const vpLinePicture &picture, std::vector<vpLedRoi> &rois);
-  vpLampObservation observe(const vpLinePicture &picture, const vpLedRoi &roi);
+  Region observe(const vpLinePicture &picture, const vpLedRoi &roi);
+  void read(const vpLinePicture &picture, Region &region) const;
   vpStripeFeatures stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
                              const vpLedRoi &roi) const;
-  void shareExposure(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois);
+  void shareExposure(const vpLinePicture &picture, std::vector<Region> &regions);
+  void recognise(std::vector<Region> &regions);
+  void joinPieces(const vpLinePicture &picture, std::vector<Region> &regions);
+  void complete(const vpLinePicture &picture, std::vector<Region> &regions);
+  void complete(const vpLinePicture &picture, Region &region, const std::vector<cv::Rect> &others) const;
+  void locate(const vpLinePicture &picture, Region &region) const;
   void place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const;
 
   vpVlpRig m_rig;
@@ -94,8 +100,7 @@ private:
   std::vector<vpLampObservation> m_observations;
   vpRowTimeError m_rowTimeError;
   vpExposureEvidence m_exposure;
-  std::vector<vpOutlineFit> m_fits; // of the observations, until their exposure is known
-  double m_blur = 0;                // px, of the latest outline: mostly that of the lens
+  double m_blur = 0; // px, of the latest outline: mostly that of the lens
 };
 
 END_VISP_NAMESPACE

@@ -1,0 +1,44 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpBlinkingLight_h
+#define vpBlinkingLight_h
+
+#include <optional>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <visp3/vlp_detection/vpLedRoiDetector.h>
+#include <visp3/vlp_detection/vpOutlineFitter.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  The whole of a light that blinks in a known way, freed of its stripes.
+
+  All parts of one lamp are exposed at the same time and have one modulation. So where a part of a lamp has
+  said how it blinks, the rest of it is what lit lines have more than the dark lines beside them. Means over
+  lit lines show light that no single pixel does; what shines steadily, or blinks otherwise, is not in them.
+*/
+class VISP_EXPORT vpBlinkingLight
+{
+public:
+  //! A lamp as a region, its chords on lit lines, with its outline.
+  struct Extent {
+    vpLedRoi roi;
+    vpOutlineFit fit;
+  };
+
+  /*!
+    \param lit Of each line of the picture, the light of the lamp as a share of its most. \param seed A part
+    of the lamp. \param others Boxes of other lamps, whose light does not count. \return The light that blinks like that and hangs together with the seed, dark patches of
+    half the seed's size apart; nothing where that has no shape of a lamp.
+  */
+  static std::optional<Extent> about(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
+                                     const vpLedRoi &seed, const std::vector<cv::Rect> &others);
+};
+
+END_VISP_NAMESPACE
+
+#endif

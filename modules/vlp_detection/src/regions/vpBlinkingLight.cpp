@@ -1,0 +1,361 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <visp3/vlp_detection/vpBlinkingLight.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "outlines/vpRimFit.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! A few lit lines together: what they have more than the dark lines beside them, sample by sample.
+struct Band {
+  int first, last; // lines
+  std::vector<float> light, dark; // dark: what the dark lines have
+};
+
+//! Samples of a band that are brighter than some level.
+struct Run {
+  size_t band;
+  int first, last;
+};
+
+//! Sum of each sample over some lines.
+void addLine(const cv::Mat_<unsigned char> &lines, int line, const cv::Rect &window, std::vector<float> &sum)
+{
+  const unsigned char *row = lines[line] + window.x;
+  for (size_t x = 0; x < sum.size(); ++x) {
+    sum[x] += row[x];
+  }
+}
+
+//! Means over a few samples to both sides.
+std::vector<float> smoothed(const std::vector<float> &values, int side)
+{
+  std::vector<float> sums(values.size() + 1, 0), means(values.size());
+  std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
+  const int n = static_cast<int>(values.size());
+  for (int x = 0; x < n; ++x) {
+    const int from = std::max(0, x - side), to = std::min(n, x + side + 1);
+    means[static_cast<size_t>(x)] =
+        (sums[static_cast<size_t>(to)] - sums[static_cast<size_t>(from)]) / static_cast<float>(to - from);
+  }
+  return means;
+}
+
+//! Lit and dark lines of a window, and what the former have more.
+class Demodulation
+{
+public:
+  Demodulation(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit, const cv::Rect &window);
+  void drop(const std::vector<cv::Rect> &others);
+  std::vector<Run> runsAbove(double level) const;
+  const std::vector<Band> &bands() const { return m_bands; }
+  double noise() const; // grey levels, standard deviation of a band's light
+  double brightest() const;
+
+private:
+  void addBands(int first, int last, const std::vector<int> &dark);
+  void dropOthers();
+
+  const cv::Mat_<unsigned char> &m_lines;
+  cv::Rect m_window;
+  std::vector<Band> m_bands;
+};
+
+Demodulation::Demodulation(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
+                           const cv::Rect &window)
+    : m_lines(lines), m_window(window)
+{
+  static const float bright = 0.75f, dim = 0.25f; // of the swing of the window's lines
+  const auto begin = lit.begin() + window.y, end = begin + window.height;
+  const auto [least, most] = std::minmax_element(begin, end);
+  const float above = *least + bright * (*most - *least), below = *least + dim * (*most - *least);
+  std::vector<int> dark;
+  for (int line = window.y; line < window.br().y; ++line) {
+    if (lit[static_cast<size_t>(line)] < below) {
+      dark.push_back(line);
+    }
+  }
+  for (int line = window.y; line < window.br().y && !dark.empty(); ++line) {
+    int last = line;
+    while (last < window.br().y && lit[static_cast<size_t>(last)] >= above) {
+      ++last;
+    }
+    if (last > line) {
+      addBands(line, last - 1, dark);
+      line = last;
+    }
+  }
+  dropOthers();
+}
+
+//! What shines on dark lines as well is no light of this lamp.
+void Demodulation::dropOthers()
+{
+  static const float share = 0.4f, least = 3; // of the light; grey levels
+  std::vector<float> all;
+  for (const Band &band : m_bands) {
+    all.insert(all.end(), band.dark.begin(), band.dark.end());
+  }
+  if (all.empty()) {
+    return;
+  }
+  const auto middle = all.begin() + static_cast<long>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  const float background = *middle;
+  for (Band &band : m_bands) {
+    for (size_t x = 0; x < band.light.size(); ++x) {
+      if (band.dark[x] - background > least + share * band.light[x]) {
+        band.light[x] = 0;
+      }
+    }
+  }
+}
+
+void Demodulation::drop(const std::vector<cv::Rect> &others)
+{
+  for (Band &band : m_bands) {
+    for (const cv::Rect &other : others) {
+      const int from = std::max(other.x - m_window.x, 0), to = std::min(other.br().x - m_window.x, m_window.width);
+      if (band.last >= other.y && band.first < other.br().y && from < to) {
+        std::fill(band.light.begin() + from, band.light.begin() + to, 0.f);
+      }
+    }
+  }
+}
+
+//! Of a stripe, a few lines each, against the dark lines nearest to the stripe.
+void Demodulation::addBands(int first, int last, const std::vector<int> &dark)
+{
+  static const int thick = 3, side = 2; // lines of a band, samples
+  static const long enough = 4;         // dark lines to each side
+  const auto after = std::upper_bound(dark.begin(), dark.end(), last);
+  const auto from = after - std::min<long>(enough, after - dark.begin()),
+             to = after + std::min<long>(enough, dark.end() - after);
+  std::vector<float> reference(static_cast<size_t>(m_window.width), 0);
+  for (auto line = from; line != to; ++line) {
+    addLine(m_lines, *line, m_window, reference);
+  }
+  const auto references = static_cast<float>(to - from);
+  const int count = std::max(1, (last - first + 1) / thick);
+  for (int k = 0; k < count; ++k) {
+    Band band;
+    band.first = first + (last - first + 1) * k / count;
+    band.last = first + (last - first + 1) * (k + 1) / count - 1;
+    std::vector<float> sum(reference.size(), 0);
+    for (int line = band.first; line <= band.last; ++line) {
+      addLine(m_lines, line, m_window, sum);
+    }
+    const auto of = static_cast<float>(band.last - band.first + 1);
+    for (size_t x = 0; x < sum.size(); ++x) {
+      sum[x] = sum[x] / of - reference[x] / references;
+    }
+    band.light = smoothed(sum, side);
+    band.dark = smoothed(reference, side);
+    for (float &grey : band.dark) {
+      grey /= references;
+    }
+    m_bands.push_back(band);
+  }
+}
+
+//! Standard deviation of the bands' light where there is no edge: of differences beyond the smoothing.
+double Demodulation::noise() const
+{
+  static const size_t apart = 5;
+  static const double perMedian = 0.954, least = 0.1; // of two Gaussian values' difference; grey levels
+  std::vector<float> differences;
+  for (const Band &band : m_bands) {
+    for (size_t x = apart; x < band.light.size(); ++x) {
+      differences.push_back(std::abs(band.light[x] - band.light[x - apart]));
+    }
+  }
+  if (differences.empty()) {
+    return least;
+  }
+  const auto middle = differences.begin() + static_cast<long>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return std::max(least, *middle / perMedian);
+}
+
+double Demodulation::brightest() const
+{
+  float most = 0;
+  for (const Band &band : m_bands) {
+    most = std::max(most, *std::max_element(band.light.begin(), band.light.end()));
+  }
+  return most;
+}
+
+std::vector<Run> Demodulation::runsAbove(double level) const
+{
+  static const int shortest = 3; // samples
+  std::vector<Run> runs;
+  for (size_t k = 0; k < m_bands.size(); ++k) {
+    const std::vector<float> &light = m_bands[k].light;
+    const int n = static_cast<int>(light.size());
+    for (int x = 0; x < n; ++x) {
+      int last = x;
+      while (last < n && light[static_cast<size_t>(last)] > level) {
+        ++last;
+      }
+      if (last - x >= shortest) {
+        runs.push_back({k, x, last - 1});
+      }
+      x = std::max(x, last);
+    }
+  }
+  return runs;
+}
+
+//! The runs that hang together with a seed: no more than \e reach from each other, px.
+std::vector<Run> connected(const std::vector<Run> &runs, const std::vector<Band> &bands, const cv::Rect &seed,
+                           int reach)
+{
+  auto near = [&](const Run &a, const Run &b) {
+    return bands[b.band].first - bands[a.band].last <= reach &&
+           bands[a.band].first - bands[b.band].last <= reach && b.first - a.last <= reach &&
+           a.first - b.last <= reach;
+  };
+  std::vector<Run> found;
+  std::vector<char> taken(runs.size(), 0);
+  for (size_t i = 0; i < runs.size(); ++i) {
+    const Run &run = runs[i];
+    const cv::Rect box(run.first, bands[run.band].first, run.last - run.first + 1,
+                       bands[run.band].last - bands[run.band].first + 1);
+    if ((box & seed).area() > 0) {
+      taken[i] = 1;
+      found.push_back(run);
+    }
+  }
+  for (size_t k = 0; k < found.size(); ++k) {
+    for (size_t i = 0; i < runs.size(); ++i) {
+      if (taken[i] == 0 && near(found[k], runs[i])) {
+        taken[i] = 1;
+        found.push_back(runs[i]);
+      }
+    }
+  }
+  return found;
+}
+
+//! First and last sample of the runs in each band; none: last before first.
+std::vector<Run> outermost(const std::vector<Run> &runs, size_t bands)
+{
+  std::vector<Run> outer;
+  for (size_t k = 0; k < bands; ++k) {
+    outer.push_back({k, std::numeric_limits<int>::max(), -1});
+  }
+  for (const Run &run : runs) {
+    outer[run.band].first = std::min(outer[run.band].first, run.first);
+    outer[run.band].last = std::max(outer[run.band].last, run.last);
+  }
+  return outer;
+}
+
+//! Where the bands' light passes the level, to a part of a sample.
+vpRimFit::Ends endsOf(const std::vector<Run> &outer, const std::vector<Band> &bands, double level,
+                      const cv::Point &origin)
+{
+  vpRimFit::Ends ends;
+  for (const Run &run : outer) {
+    const std::vector<float> &light = bands[run.band].light;
+    auto crossing = [&](int inside, int outside) {
+      const double above = light[static_cast<size_t>(inside)] - level,
+                   below = level - light[static_cast<size_t>(outside)];
+      return static_cast<float>(origin.x + inside + (outside - inside) * above / std::max(above + below, 1e-3));
+    };
+    if (run.first > 0 && run.last >= run.first && run.last + 1 < static_cast<int>(light.size())) {
+      const auto line = static_cast<float>(0.5 * (bands[run.band].first + bands[run.band].last));
+      ends.emplace_back(crossing(run.first, run.first - 1), line);
+      ends.emplace_back(crossing(run.last, run.last + 1), line);
+    }
+  }
+  return ends;
+}
+
+vpLedRoi regionOf(const std::vector<Run> &outer, const std::vector<Band> &bands, int left, double level)
+{
+  vpLedRoi roi;
+  roi.level = level;
+  for (const Run &run : outer) {
+    if (run.last < run.first) {
+      continue;
+    }
+    for (int line = bands[run.band].first; line <= bands[run.band].last; ++line) {
+      roi.chords.push_back({line, left + run.first, left + run.last});
+      roi.box |= cv::Rect(left + run.first, line, run.last - run.first + 1, 1);
+    }
+  }
+  return roi;
+}
+
+//! What touches the window's sides.
+bool isCut(const vpLedRoi &roi, const cv::Rect &window)
+{
+  return roi.box.x <= window.x || roi.box.y <= window.y || roi.box.br().x >= window.br().x ||
+         roi.box.br().y >= window.br().y;
+}
+
+cv::Rect grown(const cv::Rect &box, int by)
+{
+  return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
+}
+} // namespace
+
+std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<unsigned char> &lines,
+                                                              const std::vector<float> &lit,
+                                                              const vpLedRoi &seed,
+                                                              const std::vector<cv::Rect> &others)
+{
+  static const double sigmas = 5, least = 1, most = 0.5; // of the noise; grey levels; of the brightest light
+  static const int rounds = 3;
+  const cv::Rect picture(0, 0, lines.cols, lines.rows);
+  const int size = std::max(seed.box.width, seed.box.height), reach = std::max(3, size / 2);
+  cv::Rect box = seed.box;
+  for (int round = 0; round < rounds; ++round) {
+    const cv::Rect window = grown(box, size) & picture;
+    Demodulation light(lines, lit, window);
+    light.drop(others);
+    if (light.bands().empty()) {
+      return std::nullopt;
+    }
+    std::vector<vpRimFit::Ends> levels;
+    std::vector<vpLedRoi> regions;
+    for (double level = std::max(least, sigmas * light.noise()); level < most * light.brightest();
+         level *= vpRimFit::levelRatio) {
+      const std::vector<Run> outer =
+          outermost(connected(light.runsAbove(level), light.bands(), seed.box - cv::Point(window.x, 0), reach),
+                    light.bands().size());
+      levels.push_back(endsOf(outer, light.bands(), level, window.tl()));
+      regions.push_back(regionOf(outer, light.bands(), window.x, seed.level));
+    }
+    if (regions.empty() || regions.front().chords.empty()) {
+      return std::nullopt;
+    }
+    if (isCut(regions.front(), window) && window != picture && round + 1 < rounds) {
+      box |= regions.front().box;
+      continue;
+    }
+    size_t chosen = 0;
+    const std::optional<vpOutlineFit> fit = vpRimFit::mostStable(levels, regions.front().box, chosen);
+    if (!fit) {
+      return std::nullopt;
+    }
+    Extent extent{regions[chosen], *fit};
+    extent.roi.cutAcross = extent.roi.box.x <= 0 || extent.roi.box.br().x >= lines.cols;
+    extent.roi.cutAlong = extent.roi.box.y <= 0 || extent.roi.box.br().y >= lines.rows;
+    return extent;
+  }
+  return std::nullopt;
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,186 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// vpLedDetector::complete(): regions that are parts of one lamp become that lamp.
+
+#include <visp3/vlp_identification/vpLedDetector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <Eigen/LU>
+#include <visp3/vlp_detection/vpBlinkingLight.h>
+#include <visp3/vlp_identification/vpLedIdEvidence.h>
+
+#include "vpSeenRegion.h"
+#include "waveform/vpLitShare.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! Both regions as one: on each line from the first to the last lit sample.
+vpLedRoi joined(const vpLedRoi &a, const vpLedRoi &b)
+{
+  std::map<int, vpLedChord> chords;
+  for (const vpLedRoi *roi : {&a, &b}) {
+    for (const vpLedChord &chord : roi->chords) {
+      vpLedChord &whole = chords.emplace(chord.line, chord).first->second;
+      whole.first = std::min(whole.first, chord.first);
+      whole.last = std::max(whole.last, chord.last);
+    }
+  }
+  vpLedRoi roi = a;
+  roi.chords.clear();
+  for (const auto &[line, chord] : chords) {
+    roi.chords.push_back(chord);
+  }
+  roi.box |= b.box;
+  roi.level = std::min(a.level, b.level);
+  roi.lampness = std::max(a.lampness, b.lampness);
+  roi.cutAcross = a.cutAcross || b.cutAcross;
+  roi.cutAlong = a.cutAlong || b.cutAlong;
+  return roi;
+}
+
+
+bool tells(const vpLampObservation &lamp)
+{
+  return vpLedIdEvidence::tells(lamp.features);
+}
+
+//! Whether a region blinks, but too few of its stripes are seen to say how.
+bool blinksSomehow(const vpLampObservation &lamp)
+{
+  return lamp.features.signal != vpStripeFeatures::Signal::unmodulated && !tells(lamp);
+}
+
+//! px between two boxes, along lines or across, whichever is more; negative where they overlap.
+int gapBetween(const cv::Rect &a, const cv::Rect &b)
+{
+  return std::max(std::max(a.x, b.x) - std::min(a.br().x, b.br().x),
+                  std::max(a.y, b.y) - std::min(a.br().y, b.br().y));
+}
+
+int sizeOf(const cv::Rect &box)
+{
+  return std::max(box.width, box.height);
+}
+
+//! Whether two regions are so near to each other that they may be parts of one lamp.
+bool neighbours(const vpLedRoi &a, const vpLedRoi &b)
+{
+  return gapBetween(a.box, b.box) <= std::max(sizeOf(a.box), sizeOf(b.box)) / 2;
+}
+
+/*!
+  Whether two regions may have one modulation: of one frequency, and of one phase at a time between them, as
+  far as they tell.
+*/
+bool mayBlinkAlike(const vpLampObservation &a, const vpLampObservation &b)
+{
+  static const double sigmas = 5, most = 0.1; // standard deviations; periods
+  if (!tells(a) || !tells(b)) {
+    return a.features.signal != vpStripeFeatures::Signal::unmodulated ||
+           b.features.signal != vpStripeFeatures::Signal::unmodulated;
+  }
+  const vpStripeFeatures &one = a.features, &other = b.features;
+  if (one.signal != other.signal || one.chips != other.chips ||
+      std::abs(one.frequency - other.frequency) >
+          sigmas * std::hypot(one.frequencySigma, other.frequencySigma)) {
+    return false;
+  }
+  const double between = 0.5 * (a.time + b.time),
+               apart = (one.frequency - other.frequency) * between + one.phase - other.phase,
+               unknown = 0.5 * std::abs(a.time - b.time) * std::hypot(one.frequencySigma, other.frequencySigma);
+  // The middle of a pulse is better known than its start.
+  const double middles = apart - 0.5 * (one.duty - other.duty);
+  return std::isnan(middles) || std::abs(std::remainder(middles, 1)) < most + sigmas * unknown;
+}
+} // namespace
+
+/*!
+  Parts of a lamp that tell nothing alone may do so together; what a lamp is that tells how it blinks shows by
+  all the light that blinks like it.
+*/
+void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &regions)
+{
+  joinPieces(picture, regions);
+  std::stable_sort(regions.begin(), regions.end(), [](const Region &a, const Region &b) {
+    return tells(a.lamp) != tells(b.lamp) ? tells(a.lamp) : a.lamp.features.area > b.lamp.features.area;
+  });
+  for (size_t i = 0; i < regions.size(); ++i) {
+    Region &region = regions[i];
+    const bool alone = std::none_of(regions.begin(), regions.end(), [&region](const Region &other) {
+      return &other != &region && neighbours(region.roi, other.roi) && mayBlinkAlike(region.lamp, other.lamp);
+    });
+    if (!tells(region.lamp) || std::isnan(region.lamp.features.phase) || (alone && region.fit.sound)) {
+      continue;
+    }
+    std::vector<cv::Rect> others;
+    for (const Region &other : regions) {
+      if (&other != &region && !mayBlinkAlike(region.lamp, other.lamp)) {
+        others.push_back(other.roi.box);
+      }
+    }
+    complete(picture, region, others);
+    const cv::Rect box = region.roi.box;
+    const vpLampObservation lamp = region.lamp;
+    for (size_t k = regions.size(); k-- > 0;) {
+      const cv::Rect &other = regions[k].roi.box;
+      if (k != i && 2 * (box & other).area() > other.area() && mayBlinkAlike(lamp, regions[k].lamp)) {
+        regions.erase(regions.begin() + static_cast<long>(k));
+        i -= k < i ? 1 : 0;
+      }
+    }
+  }
+}
+
+//! All the light that blinks as the region does.
+void vpLedDetector::complete(const vpLinePicture &picture, Region &region,
+                             const std::vector<cv::Rect> &others) const
+{
+  const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
+  const std::optional<vpBlinkingLight::Extent> extent =
+      vpBlinkingLight::about(picture.grey, lit, region.roi, others);
+  if (!extent) {
+    return;
+  }
+  Region whole{extent->roi, extent->fit, region.lamp};
+  const vpOutlineFit fit = outlineFitter.fit(picture.grey, m_timing.linePositions(),
+                                             m_timing.samplePositions(), extent->roi, m_blur);
+  const Eigen::Vector2d apart = fit.outline.centre - extent->fit.outline.centre;
+  static const double sigmas = 4;
+  const Eigen::Matrix2d together = fit.outline.centreCovariance + extent->fit.outline.centreCovariance;
+  if (fit.sound && apart.dot(together.inverse() * apart) < sigmas * sigmas) {
+    whole.fit = fit;
+  }
+  read(picture, whole);
+  if (!tells(whole.lamp) || !mayBlinkAlike(whole.lamp, region.lamp)) {
+    whole.lamp.features = region.lamp.features;
+  }
+  locate(picture, whole);
+  region = whole;
+}
+
+//! Regions that tell nothing alone, with their neighbours.
+void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<Region> &regions)
+{
+  for (size_t i = 0; i < regions.size(); ++i) {
+    for (size_t k = 0; k < regions.size(); ++k) {
+      if (i == k || !blinksSomehow(regions[i].lamp) || tells(regions[k].lamp) ||
+          !neighbours(regions[i].roi, regions[k].roi)) {
+        continue;
+      }
+      regions[i] = observe(picture, joined(regions[i].roi, regions[k].roi));
+      regions.erase(regions.begin() + static_cast<long>(k));
+      i -= k < i ? 1 : 0;
+      k = static_cast<size_t>(-1);
+    }
+  }
+}
+
+END_VISP_NAMESPACE
