@@ -50,6 +50,18 @@ std::vector<float> smoothed(const std::vector<float> &values, int side)
   return means;
 }
 
+//! Standard deviation of values, by differences of any two of them.
+double deviationOf(std::vector<float> &differences)
+{
+  static const double perMedian = 0.954, least = 0.1; // of two Gaussian values' difference; grey levels
+  if (differences.empty()) {
+    return least;
+  }
+  const auto middle = differences.begin() + static_cast<long>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return std::max(least, *middle / perMedian);
+}
+
 //! Lit and dark lines of a window, and what the former have more.
 class Demodulation
 {
@@ -59,6 +71,8 @@ public:
   std::vector<Run> runsAbove(double level) const;
   const std::vector<Band> &bands() const { return m_bands; }
   double noise() const; // grey levels, standard deviation of a band's light
+  double pixelNoise() const;
+  double background() const { return m_background; } // grey value beside the lamp
   double brightest() const;
 
 private:
@@ -68,6 +82,7 @@ private:
   const cv::Mat_<unsigned char> &m_lines;
   cv::Rect m_window;
   std::vector<Band> m_bands;
+  float m_background = 0;
 };
 
 Demodulation::Demodulation(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
@@ -110,10 +125,10 @@ void Demodulation::dropOthers()
   }
   const auto middle = all.begin() + static_cast<long>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end());
-  const float background = *middle;
+  m_background = *middle;
   for (Band &band : m_bands) {
     for (size_t x = 0; x < band.light.size(); ++x) {
-      if (band.dark[x] - background > least + share * band.light[x]) {
+      if (band.dark[x] - m_background > least + share * band.light[x]) {
         band.light[x] = 0;
       }
     }
@@ -167,23 +182,29 @@ void Demodulation::addBands(int first, int last, const std::vector<int> &dark)
   }
 }
 
-//! Standard deviation of the bands' light where there is no edge: of differences beyond the smoothing.
+//! Of differences beyond the smoothing.
 double Demodulation::noise() const
 {
   static const size_t apart = 5;
-  static const double perMedian = 0.954, least = 0.1; // of two Gaussian values' difference; grey levels
   std::vector<float> differences;
   for (const Band &band : m_bands) {
     for (size_t x = apart; x < band.light.size(); ++x) {
       differences.push_back(std::abs(band.light[x] - band.light[x - apart]));
     }
   }
-  if (differences.empty()) {
-    return least;
+  return deviationOf(differences);
+}
+
+double Demodulation::pixelNoise() const
+{
+  std::vector<float> differences;
+  for (const Band &band : m_bands) {
+    const unsigned char *row = m_lines[band.first] + m_window.x;
+    for (int x = 0; x + 1 < m_window.width; ++x) {
+      differences.push_back(static_cast<float>(std::abs(row[x + 1] - row[x])));
+    }
   }
-  const auto middle = differences.begin() + static_cast<long>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(least, *middle / perMedian);
+  return deviationOf(differences);
 }
 
 double Demodulation::brightest() const
@@ -351,6 +372,8 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
       return std::nullopt;
     }
     Extent extent{regions[chosen], *fit};
+    extent.fit.background = light.background();
+    extent.fit.noise = light.pixelNoise();
     extent.roi.cutAcross = extent.roi.box.x <= 0 || extent.roi.box.br().x >= lines.cols;
     extent.roi.cutAlong = extent.roi.box.y <= 0 || extent.roi.box.br().y >= lines.rows;
     return extent;
