@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "outlines/vpRimFit.h"
+#include "vpChordShape.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -282,25 +283,59 @@ std::vector<Run> outermost(const std::vector<Run> &runs, size_t bands)
   return outer;
 }
 
-//! Where the bands' light passes the level, to a part of a sample.
+/*!
+  Where a band's light passes half of what it is a little farther in, to a part of a sample: at one level for
+  all, bright ends would lie farther out than dim ones.
+  \param from Its first sample above the level. \param step 1: the band goes on to the right; -1: to the left.
+*/
+float crossingOf(const std::vector<float> &light, int from, int to, int step, double level)
+{
+  static const int farther = 8; // samples: past the blur of a lens and the means over a few
+  auto at = [&light](int x) { return light[static_cast<size_t>(x)]; };
+  float plateau = 0;
+  for (int k = 0; k <= farther && step * (to - from) >= k; ++k) {
+    plateau = std::max(plateau, at(from + step * k));
+  }
+  const double half = std::max(level, 0.5 * plateau);
+  int x = from;
+  while (x != to && at(x) <= half) {
+    x += step;
+  }
+  const double above = at(x) - half, below = half - at(x - step);
+  return static_cast<float>(x - step * std::clamp(above / std::max(above + below, 1e-3), 0.0, 1.0));
+}
+
 vpRimFit::Ends endsOf(const std::vector<Run> &outer, const std::vector<Band> &bands, double level,
                       const cv::Point &origin)
 {
   vpRimFit::Ends ends;
   for (const Run &run : outer) {
     const std::vector<float> &light = bands[run.band].light;
-    auto crossing = [&](int inside, int outside) {
-      const double above = light[static_cast<size_t>(inside)] - level,
-                   below = level - light[static_cast<size_t>(outside)];
-      return static_cast<float>(origin.x + inside + (outside - inside) * above / std::max(above + below, 1e-3));
-    };
     if (run.first > 0 && run.last >= run.first && run.last + 1 < static_cast<int>(light.size())) {
-      const auto line = static_cast<float>(0.5 * (bands[run.band].first + bands[run.band].last));
-      ends.emplace_back(crossing(run.first, run.first - 1), line);
-      ends.emplace_back(crossing(run.last, run.last + 1), line);
+      const auto line = static_cast<float>(0.5 * (bands[run.band].first + bands[run.band].last)),
+                 left = static_cast<float>(origin.x);
+      ends.emplace_back(left + crossingOf(light, run.first, run.last, 1, level), line);
+      ends.emplace_back(left + crossingOf(light, run.last, run.first, -1, level), line);
     }
   }
   return ends;
+}
+
+/*!
+  A short side of a lamp that lies wholly in the dark between two stripes may be anywhere there, and the middle
+  with it. \param gap Lines, the longest in the dark.
+*/
+void addHiddenSides(vpLampOutline &outline, double gap)
+{
+  for (size_t side = 0; side < 2 && gap > 0; ++side) {
+    const Eigen::Vector2d along = outline.corners[side + 1] - outline.corners[side],
+                          axis = (outline.corners[(side + 2) % 4] - outline.corners[side + 1]).normalized();
+    const double hidden = gap - std::abs(along.y());
+    if (hidden > 0) {
+      const double reach = hidden / std::max(std::abs(axis.y()), 0.1);
+      outline.centreCovariance += reach * reach / 24 * axis * axis.transpose();
+    }
+  }
 }
 
 vpLedRoi regionOf(const std::vector<Run> &outer, const std::vector<Band> &bands, int left, double level)
@@ -372,6 +407,9 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
       return std::nullopt;
     }
     Extent extent{regions[chosen], *fit};
+    if (extent.fit.outline.shape == vpLampOutline::Shape::quadrilateral) {
+      addHiddenSides(extent.fit.outline, vpChordShape::longestGap(extent.roi));
+    }
     extent.fit.background = light.background();
     extent.fit.noise = light.pixelNoise();
     extent.roi.cutAcross = extent.roi.box.x <= 0 || extent.roi.box.br().x >= lines.cols;
