@@ -203,11 +203,13 @@ std::optional<vpOutlineFit> withoutCompanion(const vpEdgeFitPicture &picture, co
 
 /*!
   Light that grows inwards makes a blurred edge seem farther in, by the square of its blur times the growth:
-  to one side of an uneven emitter more than to the other.
+  to one side of an uneven emitter more than to the other. All of the growth may lie within the pixels that the
+  edge is fitted to.
 */
 void addGrowthDoubt(vpOutlineFit &fit, double evenness)
 {
-  const double doubt = fit.blur * fit.blur * (1 / evenness - 1) / (0.5 * fit.outline.diameter());
+  const double reach = std::max(4.0, 3 * fit.blur + 2); // px
+  const double doubt = fit.blur * fit.blur * std::max(0.0, 1 / evenness - 1) / reach;
   fit.outline.centreCovariance += doubt * doubt * Eigen::Matrix2d::Identity();
 }
 
@@ -362,7 +364,9 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     centreOnLight(best.outline, lines, roi);
   } else if (evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
     addCompanionDoubt(best.outline, ellipse.misfit(), brightestOf(lines, roi));
-    addGrowthDoubt(best, evenness);
+  }
+  if (sound && best.outline.shape != vpLampOutline::Shape::region) {
+    addGrowthDoubt(best, edges);
   }
   return best;
 }

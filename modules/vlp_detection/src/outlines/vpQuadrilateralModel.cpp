@@ -22,6 +22,21 @@ double wrapped(double angle)
 {
   return std::remainder(angle, 2 * M_PI);
 }
+
+//! px, between two lines that follow each other and have points.
+double longestGap(const std::vector<cv::Point2f> &points)
+{
+  std::vector<float> lines;
+  for (const cv::Point2f &point : points) {
+    lines.push_back(point.y);
+  }
+  std::sort(lines.begin(), lines.end());
+  float gap = 0;
+  for (size_t i = 1; i < lines.size(); ++i) {
+    gap = std::max(gap, lines[i] - lines[i - 1]);
+  }
+  return gap;
+}
 } // namespace
 
 vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &points)
@@ -38,10 +53,9 @@ vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &
   for (int axis = 0; axis < 2; ++axis) {
     model.m_middleSigma[axis] = model.m_scale;
     if (std::abs(model.m_normal[axis].x()) < alongLines) {
-      // Where the lamp is dark no line shows these sides: the lit lines lie anywhere between them.
-      const double hidden = model.m_offset[1 - axis] - model.m_offset[axis]; // half of what a square has more
+      // Where the lamp is dark no line shows these sides: each lies anywhere in the gap beyond the last lit line.
       static const double blurred = 1; // px, that light may reach over them or fall short of them
-      model.m_middleSigma[axis] = blurred + 2 * std::max(0.0, hidden) / std::sqrt(12.0);
+      model.m_middleSigma[axis] = blurred + longestGap(points) / std::sqrt(24.0);
     }
   }
   return model;

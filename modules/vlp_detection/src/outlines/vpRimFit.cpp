@@ -104,7 +104,7 @@ std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels
                                                  size_t &chosen)
 {
   static const double far = 0.06, px = 0.5; // misfit, share of the radius, and what samples add
-  static const double independent = 4;      // ends, of as many as there are
+  static const double independent = 2;      // ends, of as many as there are
   std::vector<std::optional<Shape>> shapes;
   for (const Ends &ends : levels) {
     shapes.push_back(nearest(rimOf(ends, box), box));

@@ -16,6 +16,8 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+const int thick = 3; // lines of a band
+
 //! A few lit lines together: what they have more than the dark lines beside them, sample by sample.
 struct Band {
   int first, last; // lines
@@ -151,7 +153,7 @@ void Demodulation::drop(const std::vector<cv::Rect> &others)
 //! Of a stripe, a few lines each, against the dark lines nearest to the stripe.
 void Demodulation::addBands(int first, int last, const std::vector<int> &dark)
 {
-  static const int thick = 3, side = 2; // lines of a band, samples
+  static const int side = 2;            // samples
   static const long enough = 4;         // dark lines to each side
   const auto after = std::upper_bound(dark.begin(), dark.end(), last);
   const auto from = after - std::min<long>(enough, after - dark.begin()),
@@ -327,6 +329,7 @@ vpRimFit::Ends endsOf(const std::vector<Run> &outer, const std::vector<Band> &ba
 */
 void addHiddenSides(vpLampOutline &outline, double gap)
 {
+  gap += thick; // the first and the last few lines
   for (size_t side = 0; side < 2 && gap > 0; ++side) {
     const Eigen::Vector2d along = outline.corners[side + 1] - outline.corners[side],
                           axis = (outline.corners[(side + 2) % 4] - outline.corners[side + 1]).normalized();

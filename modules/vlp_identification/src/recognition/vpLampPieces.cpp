@@ -117,7 +117,7 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
     const bool alone = std::none_of(regions.begin(), regions.end(), [&region](const Region &other) {
       return &other != &region && neighbours(region.roi, other.roi) && mayBlinkAlike(region.lamp, other.lamp);
     });
-    if (!tells(region.lamp) || std::isnan(region.lamp.features.phase) || (alone && region.fit.sound)) {
+    if (!tells(region.lamp) || std::isnan(region.lamp.features.phase) || (alone && region.fit.sound && region.fit.outline.shape == vpLampOutline::Shape::ellipse)) {
       continue;
     }
     std::vector<cv::Rect> others;
@@ -166,21 +166,39 @@ void vpLedDetector::complete(const vpLinePicture &picture, Region &region,
   region = whole;
 }
 
-//! Regions that tell nothing alone, with their neighbours.
+//! Regions that tell nothing alone, with their neighbours, where these together do.
 void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<Region> &regions)
 {
+  std::vector<char> done(regions.size(), 0);
   for (size_t i = 0; i < regions.size(); ++i) {
-    for (size_t k = 0; k < regions.size(); ++k) {
-      if (i == k || !blinksSomehow(regions[i].lamp) || tells(regions[k].lamp) ||
-          !neighbours(regions[i].roi, regions[k].roi)) {
-        continue;
+    if (done[i] != 0 || tells(regions[i].lamp)) {
+      continue;
+    }
+    std::vector<size_t> pieces{i};
+    vpLedRoi whole = regions[i].roi;
+    done[i] = 1;
+    for (size_t n = 0; n < pieces.size(); ++n) {
+      for (size_t k = 0; k < regions.size(); ++k) {
+        if (done[k] == 0 && !tells(regions[k].lamp) && neighbours(regions[pieces[n]].roi, regions[k].roi)) {
+          done[k] = 1;
+          pieces.push_back(k);
+          whole = joined(whole, regions[k].roi);
+        }
       }
-      regions[i] = observe(picture, joined(regions[i].roi, regions[k].roi));
-      regions.erase(regions.begin() + static_cast<long>(k));
-      i -= k < i ? 1 : 0;
-      k = static_cast<size_t>(-1);
+    }
+    if (pieces.size() > 1) {
+      Region together = observe(picture, whole);
+      if (tells(together.lamp)) {
+        regions[i] = together;
+        for (size_t n = 1; n < pieces.size(); ++n) {
+          regions[pieces[n]].roi.chords.clear(); // is no region any more
+        }
+      }
     }
   }
+  regions.erase(std::remove_if(regions.begin(), regions.end(),
+                               [](const Region &region) { return region.roi.chords.empty(); }),
+                regions.end());
 }
 
 END_VISP_NAMESPACE
