@@ -47,8 +47,7 @@ cv::Mat_<float> sharedNoise(const cv::Size &size, std::uint64_t seed)
 
 vpPhonePicture::vpPhonePicture(const vpSimulatedCamera &camera)
     : m_chromaNoise(camera.chromaNoise), m_clipped(camera.clippedChannels), m_gamma(camera.toneCurve),
-      m_sharpening(camera.sharpening), m_jpegQuality(camera.jpegQuality),
-      m_plain(m_chromaNoise == 0 && m_clipped == 0 && m_gamma == 1 && m_sharpening == 0 && m_jpegQuality == 0)
+      m_sharpening(camera.sharpening), m_jpegQuality(camera.jpegQuality)
 {
   expect("chroma noise, grey levels", m_chromaNoise, 0, 255);
   expect("clipped channels", m_clipped, 0, 0.3);
@@ -71,14 +70,15 @@ float vpPhonePicture::toned(float grey) const
   return static_cast<float>(m_gamma == 1 ? clipped : white * std::pow(clipped / white, 1 / m_gamma));
 }
 
-cv::Mat_<unsigned char> vpPhonePicture::of(const cv::Mat_<float> &grey, std::uint64_t seed) const
+cv::Mat_<unsigned char> vpPhonePicture::of(cv::Mat_<float> picture, std::uint64_t seed) const
 {
-  cv::Mat_<float> picture = grey.clone();
   if (m_chromaNoise > 0) {
     picture += m_chromaNoise * sharedNoise(picture.size(), seed);
   }
-  for (float &value : picture) {
-    value = toned(value);
+  if (m_clipped > 0 || m_gamma != 1 || m_sharpening > 0) {
+    for (float &value : picture) {
+      value = toned(value);
+    }
   }
   if (m_sharpening > 0) {
     cv::Mat_<float> soft;

@@ -19,11 +19,8 @@ public:
   //! \throw vpException (badValue) with one line that names what is out of its range.
   explicit vpPhonePicture(const vpSimulatedCamera &camera);
 
-  //! Whether there is nothing to be done.
-  bool plain() const { return m_plain; }
-
-  //! \e grey: linear, with the noise of photons and readout, as the picture lies.
-  cv::Mat_<unsigned char> of(const cv::Mat_<float> &grey, std::uint64_t seed) const;
+  //! \e picture: linear grey values, with the noise of photons and readout; it is changed.
+  cv::Mat_<unsigned char> of(cv::Mat_<float> picture, std::uint64_t seed) const;
 
 private:
   float toned(float grey) const;
@@ -33,7 +30,6 @@ private:
   double m_gamma;
   double m_sharpening;
   int m_jpegQuality;
-  bool m_plain;
 };
 
 END_VISP_NAMESPACE

@@ -71,17 +71,6 @@ float clipped(float grey)
   return grey > 0 ? std::min(grey, 255.f) : 0.f;
 }
 
-//! Saturated and rounded.
-cv::Mat_<unsigned char> digitised(const cv::Mat_<float> &grey)
-{
-  cv::Mat_<unsigned char> rounded(grey.size());
-  for (int row = 0; row < grey.rows; ++row) {
-    std::transform(grey[row], grey[row] + grey.cols, rounded[row],
-                   [](float value) { return cv::saturate_cast<unsigned char>(clipped(value)); });
-  }
-  return rounded;
-}
-
 //! The part of the grid that the emitter may be seen in.
 cv::Rect boxOf(const vpEmitter &emitter, const std::vector<vpHomogeneousMatrix> &wMc,
                const vpSensorGrid &grid, double margin)
@@ -308,12 +297,16 @@ cv::Mat_<float> vpRollingShutterRenderer::Impl::measured(const cv::Mat_<float> &
   cv::RNG random(seed * 0x9e3779b97f4a7c15ULL + 0x632be59bd9b4e019ULL); // neighbouring seeds lead far apart
   cv::Mat_<float> noise(1, light.cols);
   cv::Mat_<float> grey(light.size());
+  static constexpr float farBeyond =
+      1e6f; // grey levels: fits a whole number, and is black or white all the same
   for (int line = 0; line < light.rows; ++line) {
     random.fill(noise, cv::RNG::NORMAL, 0, 1);
     const float *in = light[line], *normal = noise[0];
     float *out = grey[line];
     for (int sample = 0; sample < light.cols; ++sample) {
-      out[sample] = in[sample] + noiseOfLevel[static_cast<size_t>(clipped(in[sample]))] * normal[sample];
+      const float value =
+          in[sample] + noiseOfLevel[static_cast<size_t>(clipped(in[sample]))] * normal[sample];
+      out[sample] = std::min(std::max(-farBeyond, value), farBeyond); // what is none at all becomes dark
     }
   }
   return grey;
@@ -343,8 +336,7 @@ void vpRollingShutterRenderer::render(const vpSimulatedScene &scene, const Poses
 {
   const cv::Mat_<float> measured =
       m_impl->grid.upright(m_impl->measured(m_impl->inHand(scene, wMc, timestamp, seed), seed));
-  const cv::Mat_<unsigned char> grey =
-      m_impl->resized(m_impl->phone.plain() ? digitised(measured) : m_impl->phone.of(measured, seed));
+  const cv::Mat_<unsigned char> grey = m_impl->resized(m_impl->phone.of(measured, seed));
   I.resize(static_cast<unsigned int>(grey.rows), static_cast<unsigned int>(grey.cols));
   cv::Mat_<unsigned char> view(grey.rows, grey.cols, I.bitmap);
   grey.copyTo(view);
