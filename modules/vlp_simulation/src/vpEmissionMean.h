@@ -18,7 +18,7 @@ BEGIN_VISP_NAMESPACE
   share of the pixel that the outline covers (vpEmitterShare), it is the pattern's light.
 
   The mean is one over points that a Fibonacci lattice spreads over blur and square, each of equal weight. On
-  a jump of brightness it is off by 2 % of the jump at most, on what is smooth by far less (tests bound both).
+  a jump of brightness it is off by 3 % of the jump at most, on what is smooth by far less (tests bound both).
   A lamp of few pixels has its own points instead, weighted by blur and square.
 */
 class vpEmissionMean

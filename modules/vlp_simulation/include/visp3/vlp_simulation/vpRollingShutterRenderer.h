@@ -49,7 +49,7 @@ struct VISP_EXPORT vpSimulatedCamera {
   same variance. Then come saturation, 8 bits and the resize that the rig states.
 
   An emission pattern that is not even is the mean of its brightness over 89 points of the pixel's blurred
-  square, those inside the outline; its error is 2 % of a jump in brightness at most, and a grey level or less
+  square, those inside the outline; its error is 3 % of a jump in brightness at most, and a grey level or less
   where the pattern is smooth over a few pixels.
 
   A phone's picture comes of these steps, in this order: blur of lens and hand; exposure; noise of photons,
