@@ -90,8 +90,7 @@ struct SlowRollingShutter {
     if (disc ? at.norm() > half : at.cwiseAbs().maxCoeff() > half)
       return 0;
     const double order = -std::log(2) / std::log(std::cos(lamp.halfPower));
-    const bool even = lamp.emission.even() && lamp.emission.strip() == 1;
-    const double rim = even && disc ? 1 - lamp.rim * at.squaredNorm() / (half * half) : 1;
+    const double rim = lamp.emission.even() && disc ? 1 - lamp.rim * at.squaredNorm() / (half * half) : 1;
     return lamp.level * rim * lamp.emission.at(at / half) * std::pow(cosine, order - 1);
   }
 

@@ -88,7 +88,8 @@ TEST(Emission, IsOneAtItsBrightestAndNowhereNegative)
   // Dies that overlap are brightest between them.
   EXPECT_NEAR(Statistics(vpEmission::ringOfDies(9, 0.5, 0.5, 0), true).most, 1, 1e-3);
   EXPECT_NEAR(Statistics(vpEmission::ringOfDies(1, 0.95, 0.02, 0), true).most, 1, 1e-2);
-  EXPECT_TRUE(vpEmission().even() && vpEmission::tube(0.2).even());
+  EXPECT_TRUE(vpEmission().even() && vpEmission::tube(1).even());
+  EXPECT_FALSE(vpEmission::tube(0.2).even() || vpEmission::tube(0.2).patterned());
 }
 
 TEST(Emission, PatternsAreWhatTheirNamesSay)
@@ -143,7 +144,7 @@ TEST(Emission, NumbersOutOfTheirRangeAreNamed)
       [] {
         vpEmission::hotSpot({1, 1}, 0.2, 0.1);
       },
-      {"place: 1.41", "expected a number from 0 to 1"});
+      {"place: 1, 1, expected a place within the unit circle"});
   vpExpectError([] { vpEmission::hotSpot({0, 0}, 0.01, 0.1); }, {"width: 0.01, expected a number from 0.02"});
   vpExpectError([] { vpEmission::ringOfDies(0, 0.5, 0.1, 0.1); },
                 {"dies: 0, expected a number from 1 to 100"});

@@ -229,3 +229,21 @@ TEST(PhonePicture, NumbersOutOfTheirRangeAreNamed)
   refused([](vpSimulatedCamera &camera) { camera.jpegQuality = 101; }, "JPEG quality: 101, expected");
   refused([](vpSimulatedCamera &camera) { camera.handBlur = 51; }, "hand blur, px: 51, expected 0 to 50");
 }
+
+TEST(PhonePicture, IsThatOfTheWholeSensorBeforeAnAreaResize)
+{
+  Lamp lamp(true);
+  lamp.camera.sharpening = 2;
+  lamp.camera.toneCurve = 2.2;
+  const cv::Mat_<unsigned char> whole = picture(lamp);
+  vpVlpRig &rig = lamp.camera.rig;
+  rig.resize.method = vpPictureResize::Method::area;
+  rig.resize.sourceWidth = rig.width;
+  rig.resize.sourceHeight = rig.height;
+  rig.camera = rig.resize.delivered(rig.camera, 42, 38);
+  rig.width = 42;
+  rig.height = 38;
+  cv::Mat expected;
+  cv::resize(whole, expected, cv::Size(42, 38), 0, 0, cv::INTER_AREA);
+  EXPECT_EQ(cv::norm(picture(lamp), expected, cv::NORM_INF), 0);
+}

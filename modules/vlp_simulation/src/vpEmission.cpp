@@ -42,7 +42,11 @@ double bump(const Eigen::Vector2d &offset, double width)
 
 vpEmission vpEmission::hotSpot(const Eigen::Vector2d &place, double width, double rest)
 {
-  expect("place", place.norm(), 0, 1);
+  if (!(place.norm() <= 1)) {
+    throw vpException(vpException::badValue, "place: " + vpNumberText(place.x()) + ", " +
+                                                 vpNumberText(place.y()) +
+                                                 ", expected a place within the unit circle");
+  }
   expectWidthAndRest(width, rest);
   return vpEmission([=](const Eigen::Vector2d &p) { return rest + (1 - rest) * bump(p - place, width); });
 }

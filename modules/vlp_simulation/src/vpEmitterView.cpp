@@ -29,7 +29,7 @@ vpEmitter::vpEmitter(const vpSimulatedLamp &simulated)
     : centre(simulated.lamp.position), disc(simulated.lamp.shape == vpLamp::Shape::disk),
       glows(simulated.glows), level(simulated.level), blur(simulated.blur),
       rim(simulated.emission.even() ? simulated.rim : 0), light(&simulated.light),
-      emission(simulated.emission.even() ? nullptr : &simulated.emission)
+      emission(simulated.emission.patterned() ? &simulated.emission : nullptr)
 {
   const vpLamp &lamp = simulated.lamp;
   if (!(lamp.size > 0)) {

@@ -159,20 +159,21 @@ void readFrames(const vpYamlNode &node, vpScenario &scenario)
   node.finish();
 }
 
+const double leastHeight = 0.05; // m, above the camera
+
 //! What a lamp must be like to be drawn. A camera sees lamps that hang above it; one beside or below it has
 //! no picture.
 void checkLamps(const vpYamlNode &top, const vpScenario &scenario)
 {
-  static const double least = 0.05;  // m
   static const double mostPpm = 1e5; // a draw of 8 sigma still runs forwards
   const double camera = scenario.rig.bMc[2][3];
   for (const vpScenario::Lamp &lamp : scenario.lamps) {
     const vpLamp &known = lamp.simulated.lamp;
     const double height = known.position.z() + lamp.shift.z();
-    if (!(height > camera + least)) {
+    if (!(height > camera + leastHeight)) {
       top.fail("lamps", "lamp " + vpShown(known.id) + " hangs at a height of " + vpNumberText(height) +
-                            " m, expected it above the camera, at more than " + vpNumberText(camera + least) +
-                            " m");
+                            " m, expected it above the camera, at more than " +
+                            vpNumberText(camera + leastHeight) + " m");
     }
     if (lamp.simulated.emission.strip() < 1 && known.shape != vpLamp::Shape::square) {
       top.fail("lamps",
@@ -200,13 +201,19 @@ void checkLamps(const vpYamlNode &top, const vpScenario &scenario)
       top.fail("lamps", "lamp " + vpShown(known.id) + ": " + error.getStringMessage());
     }
   }
+}
+
+//! Second images, too, are seen from below.
+void checkImages(const vpYamlNode &top, const vpScenario &scenario)
+{
+  const double camera = scenario.rig.bMc[2][3];
   for (const vpScenario::SecondImage &image : scenario.secondImages) {
     const vpScenario::Lamp &lamp = scenario.lamps[image.lamp];
     const double height = lamp.simulated.lamp.position.z() + lamp.shift.z() + image.shift.z();
-    if (!(height > camera + least)) {
+    if (!(height > camera + leastHeight)) {
       top.fail("truth", "second image of lamp " + vpShown(lamp.simulated.lamp.id) + " at a height of " +
                             vpNumberText(height) + " m, expected it above the camera, at more than " +
-                            vpNumberText(camera + least) + " m");
+                            vpNumberText(camera + leastHeight) + " m");
     }
   }
 }
@@ -260,6 +267,7 @@ vpScenario vpScenario::load(const std::string &filename)
   }
   top.finish();
   checkLamps(top, scenario);
+  checkImages(top, scenario);
   return scenario;
 }
 

@@ -58,8 +58,11 @@ public:
   //! Of a square only the strip |y| < width shines, evenly. \param width Share of the side, 0.01 to 1.
   static vpEmission tube(double width);
 
-  //! Whether all that shines of it is equally bright.
-  bool even() const { return !m_pattern; }
+  //! Whether all of the outline shines, equally bright.
+  bool even() const { return !patterned() && m_strip == 1; }
+
+  //! Whether what shines of it is not equally bright.
+  bool patterned() const { return static_cast<bool>(m_pattern); }
 
   //! Share of a square's side that shines, about its x axis: less than 1 of a tube only.
   double strip() const { return m_strip; }

@@ -24,7 +24,7 @@ struct VISP_EXPORT vpSimulatedLamp {
   double rim = 0;     // share by which an even disc is dimmer at its rim, with the square of the distance
   double halfPower =
       1.0471975511965976; // rad off its axis where it shines half as strong; 60 degrees: Lambert's law
-  vpEmission emission;    // which of its places shine how much; all but an even one ignore `rim`
+  vpEmission emission;    // which of its places shine how much; only an even one has a `rim`
   double blur = 0;        // px of the sensor, standard deviation, on top of the lens's
   bool glows = true;      // on the ceiling about it
 
