@@ -159,7 +159,7 @@ TEST(Emission, NumbersOutOfTheirRangeAreNamed)
   vpExpectError([] { vpEmission::tube(0); }, {"width: 0, expected a number from 0.01 to 1"});
 }
 
-TEST(EmissionRendered, SmoothOnesAreExactToAGreyLevel)
+TEST(RollingShutterRendererEmission, SmoothOnesAreExactToAGreyLevel)
 {
   bool square = false; // every other one
   for (const auto &[name, emission] : uneven()) {
@@ -175,7 +175,7 @@ TEST(EmissionRendered, SmoothOnesAreExactToAGreyLevel)
   }
 }
 
-TEST(EmissionRendered, CracksAreExactToThreePercentOfTheirJump)
+TEST(RollingShutterRendererEmission, CracksAreExactToThreePercentOfTheirJump)
 {
   for (const double blur : {0.3, 0.7, 1.5}) {
     Scene scene;
@@ -185,7 +185,7 @@ TEST(EmissionRendered, CracksAreExactToThreePercentOfTheirJump)
   }
 }
 
-TEST(EmissionRendered, TubeIsAnExactRectangle)
+TEST(RollingShutterRendererEmission, TubeIsAnExactRectangle)
 {
   Scene scene;
   scene.lamp().lamp.shape = vpLamp::Shape::square;
@@ -194,7 +194,7 @@ TEST(EmissionRendered, TubeIsAnExactRectangle)
   EXPECT_LT(scene.largestError("tube"), 0.5);
 }
 
-TEST(EmissionRendered, DistortionAndFewPixels)
+TEST(RollingShutterRendererEmission, DistortionAndFewPixels)
 {
   Scene distorted;
   distorted.camera.rig.camera.initPersProjWithDistortion(600, 610, -300, 350, -0.15, 0.16);
@@ -214,7 +214,7 @@ TEST(EmissionRendered, DistortionAndFewPixels)
   }
 }
 
-TEST(EmissionRendered, HaloIsThatOfThePattern)
+TEST(RollingShutterRendererEmission, HaloIsThatOfThePattern)
 {
   for (const vpEmission &emission :
        {vpEmission::hotSpot({0.5, -0.3}, 0.2, 0.02), vpEmission::edgeLit(0.3, 0.1, 0)}) {
