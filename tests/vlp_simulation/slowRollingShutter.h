@@ -90,8 +90,8 @@ struct SlowRollingShutter {
     if (disc ? at.norm() > half : at.cwiseAbs().maxCoeff() > half)
       return 0;
     const double order = -std::log(2) / std::log(std::cos(lamp.halfPower));
-    const double rim = disc ? 1 - lamp.rim * at.squaredNorm() / (half * half) : 1;
-    return lamp.level * rim * std::pow(cosine, order - 1);
+    const double rim = lamp.emission.even() && disc ? 1 - lamp.rim * at.squaredNorm() / (half * half) : 1;
+    return lamp.level * rim * lamp.emission.at(at / half) * std::pow(cosine, order - 1);
   }
 
   //! Weight of each cell about a pixel: its own square, blurred. The first cell lies \e margin pixels before
@@ -175,15 +175,18 @@ struct SlowRollingShutter {
     return double(count) / double(steps);
   }
 
-  //! Points of the sensor, four a pixel, that see a lamp; those beside the picture, too.
-  std::vector<Eigen::Vector2d> pointsOf(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M) const
+  //! Points of the sensor, four a pixel, that see a lamp; those beside the picture, too. The third number is
+  //! the brightness of its emission pattern there.
+  std::vector<Eigen::Vector3d> pointsOf(const vpSimulatedLamp &lamp, const vpHomogeneousMatrix &M) const
   {
     static const double beside = 100; // px
-    std::vector<Eigen::Vector2d> points;
+    double cosine;
+    std::vector<Eigen::Vector3d> points;
     for (double y = -beside; y < camera.rig.height + beside; y += 0.5)
       for (double x = -beside; x < camera.rig.width + beside; x += 0.5)
         if (brightness(lamp, M, ray(x, y)) > 0)
-          points.emplace_back(x, y);
+          points.emplace_back(
+              x, y, lamp.emission.at(inLamp(lamp.lamp, M, ray(x, y), cosine) / (0.5 * lamp.lamp.size)));
     return points;
   }
 
@@ -193,13 +196,15 @@ struct SlowRollingShutter {
     cv::Mat_<double> light(int(camera.rig.height), int(camera.rig.width), 0.0);
     if (camera.haloShare <= 0 && scene.ceilingShare <= 0)
       return light;
-    const std::vector<Eigen::Vector2d> points = pointsOf(lamp, M);
+    const std::vector<Eigen::Vector3d> points = pointsOf(lamp, M);
     const double sigma = camera.haloRadius;
     for (int v = 0; v < light.rows; ++v)
       for (int u = 0; u < light.cols; ++u) {
         double sum = 0, cosine;
-        for (const Eigen::Vector2d &point : points)
-          sum += 0.25 * std::exp(-0.5 * (point - Eigen::Vector2d(u, v)).squaredNorm() / (sigma * sigma));
+        for (const Eigen::Vector3d &point : points) {
+          const double square = (point.head<2>() - Eigen::Vector2d(u, v)).squaredNorm();
+          sum += 0.25 * point.z() * std::exp(-0.5 * square / (sigma * sigma));
+        }
         sum *= camera.haloShare / (2 * M_PI * sigma * sigma);
         const double d = inLamp(lamp.lamp, M, ray(u, v), cosine).norm() / scene.ceilingRadius;
         light(v, u) = lamp.level * (sum + scene.ceilingShare / std::pow(1 + d * d, 2));

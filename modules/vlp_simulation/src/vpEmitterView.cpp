@@ -27,7 +27,9 @@ std::pair<double, double> stretches(const Eigen::Matrix2d &gradient)
 
 vpEmitter::vpEmitter(const vpSimulatedLamp &simulated)
     : centre(simulated.lamp.position), disc(simulated.lamp.shape == vpLamp::Shape::disk),
-      level(simulated.level), rim(simulated.rim), light(&simulated.light)
+      glows(simulated.glows), level(simulated.level), blur(simulated.blur),
+      rim(simulated.emission.even() ? simulated.rim : 0), light(&simulated.light),
+      emission(simulated.emission.patterned() ? &simulated.emission : nullptr)
 {
   const vpLamp &lamp = simulated.lamp;
   if (!(lamp.size > 0)) {
@@ -35,7 +37,13 @@ vpEmitter::vpEmitter(const vpSimulatedLamp &simulated)
                       "lamp " + lamp.id +
                           ": its size is not known, expected a diameter or side to draw it by");
   }
-  halfX = halfY = 0.5 * lamp.size;
+  const double strip = simulated.emission.strip();
+  if (disc && strip < 1) {
+    throw vpException(vpException::badValue,
+                      "lamp " + lamp.id + ": a disc with the emission of a tube, expected a square");
+  }
+  halfX = 0.5 * lamp.size;
+  halfY = strip * halfX;
   x = Eigen::Vector3d(std::cos(lamp.yaw), std::sin(lamp.yaw), 0);
   y = Eigen::Vector3d(-x.y(), x.x(), 0);
   exponent = -std::log(2) / std::log(std::cos(simulated.halfPower)) - 1;
@@ -224,6 +232,13 @@ double vpEmitterShare::rectangle(const vpEmitter &emitter, const Eigen::Vector2d
     }
   }
   return sum / (cells * cells);
+}
+
+double vpEmitterShare::emission(const vpEmitter &emitter, const vpEmitterView &view,
+                                const Eigen::Vector2d &pixel, const Eigen::Vector2d &inPlane) const
+{
+  const Eigen::Matrix2d gradient = around(view, pixel).gradient();
+  return gradient.allFinite() ? m_mean.at(emitter, inPlane, gradient) : 0;
 }
 
 double vpEmitterShare::at(const vpEmitter &emitter, const vpEmitterView &view, const Eigen::Vector2d &pixel,

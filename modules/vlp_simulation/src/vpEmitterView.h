@@ -11,29 +11,12 @@
 #include <Eigen/Core>
 #include <visp3/core/vpHomogeneousMatrix.h>
 #include <visp3/vlp_core/vpPixelEdge.h>
-#include <visp3/vlp_simulation/vpSimulatedScene.h>
 
+#include "vpEmissionMean.h"
+#include "vpEmitter.h"
 #include "vpSensorGrid.h"
 
 BEGIN_VISP_NAMESPACE
-
-//! A flat shape that shines: a lamp or a window.
-struct vpEmitter {
-  Eigen::Vector3d centre;
-  Eigen::Vector3d x, y;        // unit vectors in its plane
-  double halfX = 0, halfY = 0; // m; of a disc its radius
-  bool disc = true;
-  bool lamp = true;    // shines downwards only; glows on the ceiling and in the lens
-  double level = 0;    // grey value
-  double rim = 0;      // share
-  double exponent = 0; // m - 1 of a light that falls with cos^m off its axis
-  const vpLampLight *light = nullptr;
-
-  explicit vpEmitter(const vpSimulatedLamp &lamp);
-  explicit vpEmitter(const vpSimulatedWindow &window);
-
-  double reach() const { return disc ? halfX : std::hypot(halfX, halfY); }
-};
 
 //! An emitter seen from one pose of the camera.
 class vpEmitterView
@@ -88,7 +71,10 @@ private:
 class vpEmitterShare
 {
 public:
-  vpEmitterShare(const vpSensorGrid &grid, double blur) : m_grid(grid), m_blur(std::max(blur, sharpest)) {}
+  vpEmitterShare(const vpSensorGrid &grid, double blur)
+      : m_grid(grid), m_blur(std::max(blur, sharpest)), m_mean(m_blur)
+  {
+  }
 
   //! px, from the edge, beyond which a pixel is covered wholly or not at all.
   double band() const { return 5 * m_blur + 1.5; }
@@ -98,6 +84,10 @@ public:
 
   double at(const vpEmitter &emitter, const vpEmitterView &view, const Eigen::Vector2d &pixel,
             const Eigen::Vector2d &inPlane) const;
+
+  //! Mean brightness of the emission pattern, of what the pixel sees inside the outline.
+  double emission(const vpEmitter &emitter, const vpEmitterView &view, const Eigen::Vector2d &pixel,
+                  const Eigen::Vector2d &inPlane) const;
 
   //! m of the emitter's plane that a step of one pixel there is at most.
   double longestStep(const vpEmitterView &view, const Eigen::Vector2d &pixel) const;
@@ -122,6 +112,7 @@ private:
 
   const vpSensorGrid &m_grid;
   double m_blur;
+  vpEmissionMean m_mean;
 };
 
 END_VISP_NAMESPACE

@@ -11,9 +11,12 @@
 
 #include <opencv2/imgproc.hpp>
 #include <visp3/core/vpException.h>
+#include <visp3/core/vpRotationMatrix.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
 #include "vpEmitterView.h"
+#include "vpNormalNoise.h"
+#include "vpPhonePicture.h"
 #include "vpScatteredLight.h"
 #include "vpSensorGrid.h"
 #include "vpSilhouette.h"
@@ -44,6 +47,7 @@ const vpSimulatedCamera &checked(const vpSimulatedCamera &camera)
   expect(camera.vignetting >= 0, "vignetting", camera.vignetting, notNegative);
   expect(camera.readNoise >= 0, "read noise, grey levels", camera.readNoise, notNegative);
   expect(camera.photonsPerLevel >= 0, "photons per grey level", camera.photonsPerLevel, notNegative);
+  expect(camera.handBlur >= 0 && camera.handBlur <= 50, "hand blur, px", camera.handBlur, "0 to 50");
   return camera;
 }
 
@@ -98,7 +102,7 @@ cv::Rect boxOf(const vpEmitter &emitter, const std::vector<vpHomogeneousMatrix> 
 struct vpRollingShutterRenderer::Impl {
   explicit Impl(const vpSimulatedCamera &given)
       : camera(given), grid(given.rig), share(grid, given.blur), scattered(grid, given),
-        vignetting(vignette(grid, given.vignetting)), noiseOfLevel(256)
+        vignetting(vignette(grid, given.vignetting)), noiseOfLevel(256), phone(given)
   {
     for (size_t level = 0; level < noiseOfLevel.size(); ++level) {
       const double photons =
@@ -108,12 +112,14 @@ struct vpRollingShutterRenderer::Impl {
   }
 
   cv::Mat_<float> light(const vpSimulatedScene &scene, const Poses &wMc, double timestamp) const;
-  void paint(const vpEmitter &emitter, const cv::Rect &box, const Poses &wMc, double timestamp,
-             cv::Mat_<float> &light) const;
+  void paint(const vpEmitter &emitter, const vpEmitterShare &share, const cv::Rect &box, const Poses &wMc,
+             double timestamp, cv::Mat_<float> &light) const;
   void addScattered(const std::vector<vpScatteredLight::Lamp> &lamps, double timestamp,
                     cv::Mat_<float> &light) const;
-  cv::Mat_<unsigned char> digitised(const cv::Mat_<float> &light, std::uint64_t seed) const;
-  cv::Mat delivered(const cv::Mat &linesAndSamples) const;
+  cv::Mat_<float> inHand(const vpSimulatedScene &scene, const Poses &wMc, double timestamp,
+                         std::uint64_t seed) const;
+  cv::Mat_<float> measured(const cv::Mat_<float> &light, std::uint64_t seed) const;
+  cv::Mat resized(const cv::Mat &picture) const;
 
   double middle(int line, double timestamp) const
   {
@@ -126,11 +132,13 @@ struct vpRollingShutterRenderer::Impl {
   vpScatteredLight scattered;
   cv::Mat_<float> vignetting;
   std::vector<float> noiseOfLevel; // grey levels
+  vpPhonePicture phone;
 };
 
 //! Adds what comes straight from the emitter.
-void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::Rect &box, const Poses &wMc,
-                                           double timestamp, cv::Mat_<float> &light) const
+void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const vpEmitterShare &share,
+                                           const cv::Rect &box, const Poses &wMc, double timestamp,
+                                           cv::Mat_<float> &light) const
 {
   if (box.empty()) {
     return; // beside the picture, where there are no rays
@@ -176,6 +184,9 @@ void vpRollingShutterRenderer::Impl::paint(const vpEmitter &emitter, const cv::R
         covered = share.at(emitter, view, grid.pixel(line, sample), at);
       } else if (emitter.rim > 0) {
         covered -= emitter.rim * (at.squaredNorm() + spread) / (emitter.halfX * emitter.halfX);
+      }
+      if (emitter.emission && covered > 0) {
+        covered *= share.emission(emitter, view, grid.pixel(line, sample), at);
       }
       if (emitter.exponent != 0) {
         covered *= std::pow(view.cosine(ray), emitter.exponent);
@@ -223,6 +234,9 @@ cv::Mat_<float> vpRollingShutterRenderer::Impl::light(const vpSimulatedScene &sc
                                                       double timestamp) const
 {
   std::vector<vpEmitter> emitters(scene.lamps.begin(), scene.lamps.end());
+  for (const vpSimulatedLamp &image : scene.images) {
+    emitters.emplace_back(image);
+  }
   for (const vpSimulatedWindow &window : scene.windows) {
     emitters.emplace_back(window);
   }
@@ -237,7 +251,12 @@ cv::Mat_<float> vpRollingShutterRenderer::Impl::light(const vpSimulatedScene &sc
   cv::Mat_<float> light(grid.lines(), grid.samples(), static_cast<float>(scene.ambient));
   addScattered(scattered.of(emitters, scene, poses), timestamp, light);
   for (const vpEmitter &emitter : emitters) {
-    paint(emitter, boxOf(emitter, poses, grid, share.band() + 2), wMc, timestamp, light);
+    if (emitter.blur > 0) {
+      const vpEmitterShare softer(grid, std::hypot(camera.blur, emitter.blur));
+      paint(emitter, softer, boxOf(emitter, poses, grid, softer.band() + 2), wMc, timestamp, light);
+    } else {
+      paint(emitter, share, boxOf(emitter, poses, grid, share.band() + 2), wMc, timestamp, light);
+    }
   }
   const vpSilhouette silhouette(grid, nodes, camera.blur, scene, poses, times);
   for (int line = 0; !silhouette.empty() && line < light.rows; ++line) {
@@ -247,36 +266,62 @@ cv::Mat_<float> vpRollingShutterRenderer::Impl::light(const vpSimulatedScene &sc
   return light.mul(vignetting);
 }
 
-cv::Mat_<unsigned char> vpRollingShutterRenderer::Impl::digitised(const cv::Mat_<float> &light,
-                                                                  std::uint64_t seed) const
+//! The same seen by a hand that turns the camera evenly during each exposure.
+cv::Mat_<float> vpRollingShutterRenderer::Impl::inHand(const vpSimulatedScene &scene, const Poses &wMc,
+                                                       double timestamp, std::uint64_t seed) const
+{
+  if (camera.handBlur == 0) {
+    return light(scene, wMc, timestamp);
+  }
+  const vpCameraParameters sensor =
+      camera.rig.resize.sensor(camera.rig.camera, camera.rig.width, camera.rig.height);
+  const double direction = M_PI * vpNormalNoise(seed, 0).uniform();
+  static const double step = 0.5; // px, well within the blur of a pixel's square
+  const int steps = std::max(2, static_cast<int>(std::ceil(camera.handBlur / step)));
+  cv::Mat_<float> sum(grid.lines(), grid.samples(), 0.f);
+  for (int k = 0; k < steps; ++k) {
+    const double along = camera.handBlur * ((k + 0.5) / steps - 0.5); // px
+    const double du = along * std::cos(direction), dv = along * std::sin(direction);
+    vpHomogeneousMatrix turn;
+    turn.insert(vpRotationMatrix(dv * sensor.get_py_inverse(), -du * sensor.get_px_inverse(), 0));
+    sum += light(
+        scene, [&](double time) { return wMc(time) * turn; }, timestamp);
+  }
+  return sum / steps;
+}
+
+//! With the noise of photons and readout.
+cv::Mat_<float> vpRollingShutterRenderer::Impl::measured(const cv::Mat_<float> &light,
+                                                         std::uint64_t seed) const
 {
   cv::RNG random(seed * 0x9e3779b97f4a7c15ULL + 0x632be59bd9b4e019ULL); // neighbouring seeds lead far apart
   cv::Mat_<float> noise(1, light.cols);
-  cv::Mat_<unsigned char> grey(light.size());
+  cv::Mat_<float> grey(light.size());
+  static constexpr float farBeyond =
+      1e6f; // grey levels: fits a whole number, and is black or white all the same
   for (int line = 0; line < light.rows; ++line) {
     random.fill(noise, cv::RNG::NORMAL, 0, 1);
     const float *in = light[line], *normal = noise[0];
-    unsigned char *out = grey[line];
+    float *out = grey[line];
     for (int sample = 0; sample < light.cols; ++sample) {
       const float value =
           in[sample] + noiseOfLevel[static_cast<size_t>(clipped(in[sample]))] * normal[sample];
-      out[sample] = cv::saturate_cast<unsigned char>(clipped(value));
+      out[sample] = std::min(std::max(-farBeyond, value), farBeyond); // what is none at all becomes dark
     }
   }
   return grey;
 }
 
 //! The picture as software hands it on.
-cv::Mat vpRollingShutterRenderer::Impl::delivered(const cv::Mat &linesAndSamples) const
+cv::Mat vpRollingShutterRenderer::Impl::resized(const cv::Mat &picture) const
 {
-  cv::Mat picture = grid.upright(linesAndSamples);
-  if (camera.rig.resize.method == vpPictureResize::Method::area) {
-    cv::Mat resized;
-    const cv::Size size(static_cast<int>(camera.rig.width), static_cast<int>(camera.rig.height));
-    cv::resize(picture, resized, size, 0, 0, cv::INTER_AREA);
-    return resized;
+  if (camera.rig.resize.method != vpPictureResize::Method::area) {
+    return picture;
   }
-  return picture;
+  cv::Mat small;
+  const cv::Size size(static_cast<int>(camera.rig.width), static_cast<int>(camera.rig.height));
+  cv::resize(picture, small, size, 0, 0, cv::INTER_AREA);
+  return small;
 }
 
 vpRollingShutterRenderer::vpRollingShutterRenderer(const vpSimulatedCamera &camera)
@@ -289,8 +334,9 @@ vpRollingShutterRenderer::~vpRollingShutterRenderer() = default;
 void vpRollingShutterRenderer::render(const vpSimulatedScene &scene, const Poses &wMc, double timestamp,
                                       std::uint64_t seed, vpImage<unsigned char> &I) const
 {
-  const cv::Mat_<unsigned char> grey =
-      m_impl->delivered(m_impl->digitised(m_impl->light(scene, wMc, timestamp), seed));
+  const cv::Mat_<float> measured =
+      m_impl->grid.upright(m_impl->measured(m_impl->inHand(scene, wMc, timestamp, seed), seed));
+  const cv::Mat_<unsigned char> grey = m_impl->resized(m_impl->phone.of(measured, seed));
   I.resize(static_cast<unsigned int>(grey.rows), static_cast<unsigned int>(grey.cols));
   cv::Mat_<unsigned char> view(grey.rows, grey.cols, I.bitmap);
   grey.copyTo(view);
@@ -299,7 +345,7 @@ void vpRollingShutterRenderer::render(const vpSimulatedScene &scene, const Poses
 cv::Mat_<float> vpRollingShutterRenderer::exact(const vpSimulatedScene &scene, const Poses &wMc,
                                                 double timestamp) const
 {
-  return m_impl->delivered(m_impl->light(scene, wMc, timestamp));
+  return m_impl->resized(m_impl->grid.upright(m_impl->light(scene, wMc, timestamp)));
 }
 
 END_VISP_NAMESPACE

@@ -60,6 +60,69 @@ private:
   std::vector<double> m_share;
 };
 
+/*!
+  An emission pattern blurred by a Gaussian: the sum of the blurs of cells so small that they pass for points.
+  px, in the lamp's axes.
+*/
+class BlurredEmission
+{
+public:
+  BlurredEmission(const vpEmitter &emitter, double halfX, double halfY, double sigma)
+      : m_half(halfX, halfY), m_sigma(sigma),
+        m_across(static_cast<int>(std::clamp(std::ceil(4 * halfX / sigma), least, most))),
+        m_cells(m_across, m_across)
+  {
+    static const int points = 8; // across a cell
+    for (int row = 0; row < m_across; ++row) {
+      for (int column = 0; column < m_across; ++column) {
+        double sum = 0;
+        for (int k = 0; k < points * points; ++k) {
+          const Eigen::Vector2d at(column + (k % points + 0.5) / points, row + (k / points + 0.5) / points);
+          const Eigen::Vector2d place = 2 * at / m_across - Eigen::Vector2d::Ones();
+          sum += emitter.covers(place) ? emitter.emission->at(place) : 0;
+        }
+        m_cells(row, column) = sum / (points * points);
+      }
+    }
+  }
+
+  double at(const Eigen::Vector2d &pixel) const
+  {
+    const std::vector<double> x = weights(pixel.x(), m_half.x()), y = weights(pixel.y(), m_half.y());
+    double sum = 0;
+    for (int row = 0; row < m_across; ++row) {
+      for (int column = 0; y[row] > 0 && column < m_across; ++column) {
+        sum += y[row] * x[column] * m_cells(row, column);
+      }
+    }
+    return sum;
+  }
+
+private:
+  static constexpr double least = 4; // cells across
+  static constexpr double most =
+      64; // a halo so narrow that it wants more hardly leaves the cell it comes from
+
+  //! Of each column or row of cells.
+  std::vector<double> weights(double at, double half) const
+  {
+    const double cell = 2 * half / m_across;
+    std::vector<double> weight(static_cast<size_t>(m_across), 0.0);
+    for (int k = 0; k < m_across; ++k) {
+      const double away = at + half - (k + 0.5) * cell;
+      if (std::abs(away) < 5 * m_sigma + 0.5 * cell) {
+        weight[static_cast<size_t>(k)] = within(away, 0.5 * cell, m_sigma);
+      }
+    }
+    return weight;
+  }
+
+  Eigen::Vector2d m_half;
+  double m_sigma;
+  int m_across;
+  cv::Mat_<double> m_cells;
+};
+
 //! Metres of the emitter's plane that a pixel of the sensor spans at its middle; 0 where the camera cannot
 //! see it.
 double metresPerPixel(const vpSensorGrid &grid, const vpEmitterView &view)
@@ -96,7 +159,10 @@ cv::Mat_<float> vpScatteredLight::of(const vpEmitter &emitter, const vpSimulated
   const bool halo = m_share > 0 && scale > 0;
   const double halfX = halo ? emitter.halfX / scale : 0, halfY = halo ? emitter.halfY / scale : 0; // px
   std::optional<BlurredDisc> disc;
-  if (halo && emitter.disc) {
+  std::optional<BlurredEmission> emission;
+  if (halo && emitter.emission) {
+    emission.emplace(emitter, halfX, halfY, m_radius);
+  } else if (halo && emitter.disc) {
     disc.emplace(halfX, m_radius);
   }
   for (int node = 0; node < light.rows; ++node) {
@@ -107,14 +173,15 @@ cv::Mat_<float> vpScatteredLight::of(const vpEmitter &emitter, const vpSimulated
         continue;
       }
       double share = 0;
-      if (scene.ceilingShare > 0) {
+      if (scene.ceilingShare > 0 && emitter.glows) {
         const double fall = 1 + at.squaredNorm() / (scene.ceilingRadius * scene.ceilingRadius);
         share += scene.ceilingShare / (fall * fall);
       }
       if (halo) {
         at /= scale; // px
-        share += m_share * (disc ? disc->at(at.norm())
-                                 : within(at.x(), halfX, m_radius) * within(at.y(), halfY, m_radius));
+        share += m_share * (emission ? emission->at(at)
+                            : disc   ? disc->at(at.norm())
+                                     : within(at.x(), halfX, m_radius) * within(at.y(), halfY, m_radius));
       }
       light(node, k) = static_cast<float>(emitter.level * share);
     }

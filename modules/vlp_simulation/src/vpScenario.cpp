@@ -42,6 +42,23 @@ File loaded(const vpYamlNode &top, const std::string &key)
   }
 }
 
+//! A phone in a hand.
+void readPhone(const vpYamlNode &node, vpSimulatedCamera &camera)
+{
+  camera.handBlur = vpScenarioYaml::between(node, "hand_blur_px", 0, 50, camera.handBlur);
+  camera.chromaNoise = vpScenarioYaml::between(node, "chroma_noise", 0, 255, camera.chromaNoise);
+  camera.clippedChannels = vpScenarioYaml::between(node, "clipped_channels", 0, 0.3, camera.clippedChannels);
+  camera.toneCurve = vpScenarioYaml::between(node, "tone_curve", 0.2, 5, camera.toneCurve);
+  camera.sharpening = vpScenarioYaml::between(node, "sharpening", 0, 10, camera.sharpening);
+  if (node.has("jpeg_quality")) {
+    const unsigned int quality = node.wholeNumber("jpeg_quality");
+    if (quality > 100) {
+      node.fail("jpeg_quality", std::to_string(quality) + ", expected a whole number from 0 to 100");
+    }
+    camera.jpegQuality = static_cast<int>(quality);
+  }
+}
+
 void readCamera(const vpYamlNode &top, vpScenario &scenario)
 {
   vpSimulatedCamera &camera = scenario.camera;
@@ -59,6 +76,7 @@ void readCamera(const vpYamlNode &top, vpScenario &scenario)
                 vpNumberText(scenario.rig.shutter.exposure) + ", expected at most " + vpNumberText(longest));
     }
     wholeLines = !node.has("whole_line_exposure") || node.boolean("whole_line_exposure");
+    readPhone(node, camera);
     if (node.has("halo")) {
       const vpYamlNode halo = node.mapping("halo");
       camera.haloShare = halo.number("share", Range::openUnit);
@@ -141,20 +159,25 @@ void readFrames(const vpYamlNode &node, vpScenario &scenario)
   node.finish();
 }
 
+const double leastHeight = 0.05; // m, above the camera
+
 //! What a lamp must be like to be drawn. A camera sees lamps that hang above it; one beside or below it has
 //! no picture.
 void checkLamps(const vpYamlNode &top, const vpScenario &scenario)
 {
-  static const double least = 0.05;  // m
   static const double mostPpm = 1e5; // a draw of 8 sigma still runs forwards
   const double camera = scenario.rig.bMc[2][3];
   for (const vpScenario::Lamp &lamp : scenario.lamps) {
     const vpLamp &known = lamp.simulated.lamp;
     const double height = known.position.z() + lamp.shift.z();
-    if (!(height > camera + least)) {
+    if (!(height > camera + leastHeight)) {
       top.fail("lamps", "lamp " + vpShown(known.id) + " hangs at a height of " + vpNumberText(height) +
-                            " m, expected it above the camera, at more than " + vpNumberText(camera + least) +
-                            " m");
+                            " m, expected it above the camera, at more than " +
+                            vpNumberText(camera + leastHeight) + " m");
+    }
+    if (lamp.simulated.emission.strip() < 1 && known.shape != vpLamp::Shape::square) {
+      top.fail("lamps",
+               "lamp " + vpShown(known.id) + " is a disc with the emission of a tube, expected a square");
     }
     if (!(known.size > 0)) {
       top.fail("lamps",
@@ -176,6 +199,21 @@ void checkLamps(const vpYamlNode &top, const vpScenario &scenario)
       const vpLampLight light(known.modulation);
     } catch (const vpException &error) {
       top.fail("lamps", "lamp " + vpShown(known.id) + ": " + error.getStringMessage());
+    }
+  }
+}
+
+//! Second images, too, are seen from below.
+void checkImages(const vpYamlNode &top, const vpScenario &scenario)
+{
+  const double camera = scenario.rig.bMc[2][3];
+  for (const vpScenario::SecondImage &image : scenario.secondImages) {
+    const vpScenario::Lamp &lamp = scenario.lamps[image.lamp];
+    const double height = lamp.simulated.lamp.position.z() + lamp.shift.z() + image.shift.z();
+    if (!(height > camera + leastHeight)) {
+      top.fail("truth", "second image of lamp " + vpShown(lamp.simulated.lamp.id) + " at a height of " +
+                            vpNumberText(height) + " m, expected it above the camera, at more than " +
+                            vpNumberText(camera + leastHeight) + " m");
     }
   }
 }
@@ -229,6 +267,7 @@ vpScenario vpScenario::load(const std::string &filename)
   }
   top.finish();
   checkLamps(top, scenario);
+  checkImages(top, scenario);
   return scenario;
 }
 

@@ -75,6 +75,7 @@ vpSimulatedLamp readLight(const vpYamlNode &top, vpSimulatedScene &scene)
   const vpYamlNode node = top.mapping("light");
   usual.level = levelOf(node, "lamp_level", usual.level);
   usual.rim = shareOf(node, "rim", usual.rim);
+  usual.emission = vpScenarioYaml::readEmission(node, usual.emission);
   usual.halfPower = halfPowerOf(node, usual.halfPower);
   scene.ambient = levelOf(node, "ambient", scene.ambient);
   if (node.has("ceiling")) {
@@ -106,6 +107,7 @@ void readLamp(const vpYamlNode &node, std::vector<vpScenario::Lamp> &lamps)
   found->dark = readTimes(node, "dark");
   lamp.level = levelOf(node, "level", lamp.level);
   lamp.rim = shareOf(node, "rim", lamp.rim);
+  lamp.emission = vpScenarioYaml::readEmission(node, lamp.emission);
   lamp.halfPower = halfPowerOf(node, lamp.halfPower);
   node.finish();
 }
@@ -125,6 +127,7 @@ void readLamps(const std::optional<vpYamlNode> &truth, const vpSimulatedLamp &us
   }
   if (truth->has("more_lamps")) {
     for (const vpYamlNode &node : truth->mappings("more_lamps")) {
+      const vpEmission emission = vpScenarioYaml::readEmission(node, usual.emission);
       const vpLamp lamp = vpLamp::read(node);
       for (const vpScenario::Lamp &other : scenario.lamps) {
         if (other.simulated.lamp.id == lamp.id) {
@@ -132,6 +135,7 @@ void readLamps(const std::optional<vpYamlNode> &truth, const vpSimulatedLamp &us
         }
       }
       add(lamp);
+      scenario.lamps.back().simulated.emission = emission;
     }
   }
   if (truth->has("lamps")) {
@@ -202,6 +206,11 @@ void vpScenarioYaml::readScene(const vpYamlNode &top, const std::optional<vpYaml
   const vpSimulatedLamp usual = readLight(top, scenario.scene);
   readLamps(truth, usual, scenario);
   if (truth) {
+    if (truth->has("second_images")) {
+      for (const vpYamlNode &node : truth->mappings("second_images")) {
+        scenario.secondImages.push_back(readSecondImage(node, scenario.lamps));
+      }
+    }
     truth->finish();
   }
   if (top.has("windows")) {

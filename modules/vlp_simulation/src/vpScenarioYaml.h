@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <visp3/vlp_core/vpYamlNode.h>
 #include <visp3/vlp_simulation/vpScenario.h>
@@ -31,7 +32,14 @@ void expectNear(const vpYamlNode &node, const std::string &key, const std::vecto
 //! `motion` and, of a driven robot, `robot`. \e frameRate: Hz, for stations held for a number of frames.
 vpScenario::Motion readMotion(const vpYamlNode &top, double frameRate);
 
-//! `light`, `windows`, `people`, and the `lamps` and `more_lamps` of \e truth, which it finishes.
+//! `emission` of a lamp or of all lamps, \e otherwise where it is left out.
+vpEmission readEmission(const vpYamlNode &parent, const vpEmission &otherwise);
+
+//! An entry of `second_images`.
+vpScenario::SecondImage readSecondImage(const vpYamlNode &node, const std::vector<vpScenario::Lamp> &lamps);
+
+//! `light`, `windows`, `people`, and the `lamps`, `more_lamps` and `second_images` of \e truth, which it
+//! finishes.
 void readScene(const vpYamlNode &top, const std::optional<vpYamlNode> &truth, vpScenario &scenario);
 
 } // namespace vpScenarioYaml

@@ -88,6 +88,10 @@ vpSimulation::vpSimulation(const vpScenario &scenario, std::uint64_t seed,
 {
   m_camera.rig = trueRig(scenario, seed);
   m_scene.lamps = trueLamps(scenario, seed);
+  for (const vpScenario::SecondImage &image : scenario.secondImages) {
+    m_scene.images.push_back(
+        m_scene.lamps[image.lamp].image(image.shift, image.share, image.blur, image.mirrored));
+  }
   m_renderer = std::make_unique<vpRollingShutterRenderer>(m_camera);
 }
 

@@ -28,6 +28,14 @@ struct VISP_EXPORT vpSimulatedCamera {
   double readNoise = 1; // grey levels, standard deviation
   double photonsPerLevel =
       40; // electrons per grey level: their number varies by its square root. 0: no such noise
+
+  // What a phone in a hand does, nothing as it comes; vpRollingShutterRenderer has the order.
+  double handBlur = 0;        // px, length of the straight smear; its direction is drawn for each frame
+  double chromaNoise = 0;     // grey levels, standard deviation of noise that neighbouring pixels share
+  double clippedChannels = 0; // share by which green clips before the grey value is white, 0 to 0.3
+  double toneCurve = 1;       // gamma: the grey value is 255 (light / 255)^(1 / gamma), 0.2 to 5
+  double sharpening = 0;      // strength of an unsharp mask: times what a blur of 1 px takes away
+  int jpegQuality = 0;        // 1 to 100; 0: no compression
 };
 
 /*!
@@ -39,6 +47,17 @@ struct VISP_EXPORT vpSimulatedCamera {
   correction of second order; of a disc of few pixels, or whose tips bend sharply, chords are summed. Glow of
   the ceiling and halo of the lens are smooth and interpolated between nodes. Photon noise is Gaussian of the
   same variance. Then come saturation, 8 bits and the resize that the rig states.
+
+  An emission pattern that is not even is the mean of its brightness over 89 points of the pixel's blurred
+  square, those inside the outline; its error is 3 % of a jump in brightness at most, and a grey level or less
+  where the pattern is smooth over a few pixels.
+
+  A phone's picture comes of these steps, in this order: blur of lens and hand; exposure; noise of photons,
+  readout and chroma; clipping of the channels; tone curve; sharpening; rounding to 8 bits; JPEG; the resize
+  that the rig states. The hand smears what the lens shows, not the stripes, which come of time: each line is
+  the mean of what cameras turned by up to half the smear either way see with that line's own exposure. Steps
+  that know neighbours (chroma noise, sharpening, JPEG) have those of the pixels that are drawn: after a
+  nearest-neighbour resize the pixels that remain.
 */
 class VISP_EXPORT vpRollingShutterRenderer
 {
@@ -60,7 +79,7 @@ public:
   void render(const vpSimulatedScene &scene, const Poses &wMc, double timestamp, std::uint64_t seed,
               vpImage<unsigned char> &I) const;
 
-  //! The same before noise, saturation and rounding, grey values.
+  //! The same before noise, saturation and all that follows, grey values; without the blur of the hand.
   cv::Mat_<float> exact(const vpSimulatedScene &scene, const Poses &wMc, double timestamp) const;
 
 private:

@@ -49,6 +49,15 @@ struct VISP_EXPORT vpScenario {
     std::vector<std::pair<double, double>> dark;     // s, from and until
   };
 
+  //! What a pane or a shiny plate shows of a lamp, wherever that truly hangs.
+  struct SecondImage {
+    size_t lamp = 0;                                 // index into lamps
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero(); // m, from the lamp
+    double share = 0;                                // of the lamp's brightness
+    double blur = 0;                                 // px of the sensor, standard deviation
+    bool mirrored = false;
+  };
+
   //! How the robot moves: held in places, or driven.
   struct Motion {
     std::vector<vpHomogeneousMatrix> stations; // wMb; empty: it is driven
@@ -64,6 +73,7 @@ struct VISP_EXPORT vpScenario {
   vpSimulatedCamera camera; // all but its rig
   vpSimulatedScene scene;   // all but its lamps
   std::vector<Lamp> lamps;  // those of the map and those that no map knows
+  std::vector<SecondImage> secondImages;
   Motion motion;
   double frameRate = 12; // Hz
   size_t frames = 0;

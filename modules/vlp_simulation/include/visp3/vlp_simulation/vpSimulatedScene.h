@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_simulation/vpEmission.h>
 #include <visp3/vlp_simulation/vpLampLight.h>
 
 BEGIN_VISP_NAMESPACE
@@ -19,9 +20,20 @@ struct VISP_EXPORT vpSimulatedLamp {
   vpLamp lamp;        // its size must be known
   vpLampLight light;  // over time
   double level = 180; // grey value that it alone has at the picture's middle, lit and seen from below
-  double rim = 0;     // share by which it is dimmer at its rim, falling with the square of the distance
+                      // at its brightest place
+  double rim = 0;     // share by which an even disc is dimmer at its rim, with the square of the distance
   double halfPower =
       1.0471975511965976; // rad off its axis where it shines half as strong; 60 degrees: Lambert's law
+  vpEmission emission;    // which of its places shine how much; only an even one has a `rim`
+  double blur = 0;        // px of the sensor, standard deviation, on top of the lens's
+  bool glows = true;      // on the ceiling about it
+
+  /*!
+    Its image in a pane or a shiny plate: the same light, \e share as bright, \e shift (m) beside it, without
+    a glow on the ceiling. A mirrored one is turned as an upright mirror half-way there turns it.
+    \throw vpException (badValue) where it is mirrored and the shift is upright.
+  */
+  vpSimulatedLamp image(const Eigen::Vector3d &shift, double share, double extraBlur, bool mirrored) const;
 };
 
 //! A flat rectangle that shines without blinking: a window, a door to daylight, a light panel.
@@ -52,6 +64,7 @@ struct VISP_EXPORT vpSimulatedPerson {
 //! What the camera looks up at.
 struct VISP_EXPORT vpSimulatedScene {
   std::vector<vpSimulatedLamp> lamps;
+  std::vector<vpSimulatedLamp> images; // of lamps, in panes and shiny plates
   std::vector<vpSimulatedWindow> windows;
   std::vector<vpSimulatedPerson> people;
   double ambient = 6; // grey value of the ceiling
