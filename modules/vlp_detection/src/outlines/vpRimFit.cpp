@@ -74,9 +74,12 @@ std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim, const cv::Rect
                                                      vpQuadrilateralModel::parameters)),
                  sides};
   }
-  return Shape{vpEllipseModel::from(rim, box).outline(
-                   Eigen::MatrixXd::Zero(vpEllipseModel::parameters, vpEllipseModel::parameters)),
-               ellipse};
+  const std::optional<vpEllipseModel> model = vpEllipseModel::through(rim);
+  if (!model) {
+    return std::nullopt;
+  }
+  return Shape{
+      model->outline(Eigen::MatrixXd::Zero(vpEllipseModel::parameters, vpEllipseModel::parameters)), ellipse};
 }
 
 //! Median of the samples a little outside the ends.
@@ -105,6 +108,7 @@ std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels
 {
   static const double far = 0.06, px = 0.5; // misfit, share of the radius, and what samples add
   static const double independent = 2;      // ends, of as many as there are
+  static const double halving = std::log(2) / std::log(levelRatio);
   std::vector<std::optional<Shape>> shapes;
   for (const Ends &ends : levels) {
     shapes.push_back(nearest(rimOf(ends, box), box));
@@ -116,22 +120,21 @@ std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels
       continue;
     }
     const Shape &shape = *shapes[k];
-    Eigen::Vector2d apart = Eigen::Vector2d::Zero();
     double change = 0.5 * shape.radius(); // of the highest level
     if (k + 1 < shapes.size() && shapes[k + 1]) {
-      apart = shapes[k + 1]->outline.centre - shape.outline.centre;
-      change = std::hypot(shapes[k + 1]->radius() - shape.radius(), apart.norm());
+      const Shape &next = *shapes[k + 1];
+      change = halving * std::hypot(next.radius() - shape.radius(),
+                                    (next.outline.centre - shape.outline.centre).norm());
     }
-    const double unknown = std::hypot(change, shape.misfit) / shape.radius();
-    if (unknown < least) {
-      least = unknown;
+    const double unknown = std::hypot(change, shape.misfit);
+    if (unknown / shape.radius() < least) {
+      least = unknown / shape.radius();
       chosen = k;
       best.emplace();
       best->outline = shape.outline;
-      best->blur = std::hypot(change, shape.misfit);
+      best->blur = unknown;
       best->outline.centreCovariance =
-          (change * change + shape.misfit * shape.misfit) / independent * Eigen::Matrix2d::Identity() +
-          apart * apart.transpose();
+          (change * change + shape.misfit * shape.misfit / independent) * Eigen::Matrix2d::Identity();
     }
   }
   return best;

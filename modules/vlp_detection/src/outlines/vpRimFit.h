@@ -20,14 +20,15 @@ BEGIN_VISP_NAMESPACE
   Ends are those at a grey level, and levels rise by the same factor. Ends inside the convex hull of all are no
   rim: the emitter is dark there. An ellipse and a rectangle compete by their mean squared distance from the
   rest. The outline is that of the level from which it changes least to the next (maximally stable, Matas et
-  al. 2002): there the lamp has its edge. By how much it changes is what is not known of it. What neighbouring
-  ends are off by has one cause, so that they count as few.
+  al. 2002): there the lamp has its edge. By how much it changes while
+  the light halves is what is not known of it. What neighbouring ends are off by has one cause, so that they
+  count as few.
 */
 namespace vpRimFit
 {
 using Ends = std::vector<cv::Point2f>; // line by line, the first one first
 
-constexpr double levelRatio = 1.5;
+constexpr double levelRatio = 1.25;
 
 //! \param levels Ends at each level, the lowest first. \param[out] chosen Which one it is. \return Nothing
 //! where neither shape comes near to the ends of any.

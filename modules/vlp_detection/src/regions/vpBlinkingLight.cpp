@@ -375,7 +375,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
                                                               const vpLedRoi &seed,
                                                               const std::vector<cv::Rect> &others)
 {
-  static const double sigmas = 5, least = 1, most = 0.5; // of the noise; grey levels; of the brightest light
+  static const double sigmas = 4, least = 1, most = 0.5; // of the noise; grey levels; of the brightest light
   static const int rounds = 3;
   const cv::Rect picture(0, 0, lines.cols, lines.rows);
   const int size = std::max(seed.box.width, seed.box.height), reach = std::max(3, size / 2);
