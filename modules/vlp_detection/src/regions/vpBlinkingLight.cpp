@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+#include <visp3/vlp_core/vpBrighter.h>
+
 #include "outlines/vpRimFit.h"
 #include "vpChordShape.h"
 
@@ -369,6 +371,26 @@ cv::Rect grown(const cv::Rect &box, int by)
   return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
 }
 } // namespace
+
+double vpBlinkingLight::share(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
+                              const cv::Rect &box)
+{
+  std::vector<double> light;
+  for (int line = box.y; line < box.br().y; ++line) {
+    light.push_back(vpBrighter::sum(lines[line] + box.x, box.width));
+  }
+  const double dark = *std::min_element(light.begin(), light.end());
+  double all = 0, kept = 0, shines = 0, squares = 0;
+  for (size_t i = 0; i < light.size(); ++i) {
+    const double now = lit[static_cast<size_t>(box.y) + i];
+    all += light[i] - dark;
+    kept += (light[i] - dark) * now;
+    shines += now;
+    squares += now * now;
+  }
+  const double chance = shines / static_cast<double>(light.size()), most = squares / std::max(shines, 1e-9);
+  return (kept / std::max(all, 1e-9) - chance) / std::max(most - chance, 1e-9);
+}
 
 std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<unsigned char> &lines,
                                                               const std::vector<float> &lit,

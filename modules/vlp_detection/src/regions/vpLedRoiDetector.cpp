@@ -131,7 +131,7 @@ void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,
   Whether a lamp is left that hangs before it.
 */
 bool onlyLampsBefore(const Group &around, const std::vector<Group> &tree,
-                     const cv::Mat_<unsigned char> &lines, std::vector<int> &above)
+                     const cv::Mat_<unsigned char> &lines, const vpBackground &dark, std::vector<int> &above)
 {
   static const double farLarger = 2;
   std::vector<int> lamps;
@@ -139,7 +139,7 @@ bool onlyLampsBefore(const Group &around, const std::vector<Group> &tree,
   for (int node : above) {
     const Group &part = tree[node];
     const bool like = part.roi.lampness > likeALamp,
-               own = around.size() > farLarger * part.size() && vpOwnStripes(part.roi, around.roi, lines);
+               own = around.size() > farLarger * part.size() && vpOwnStripes(part.roi, around.roi, lines, dark.level);
     any = any || (like && own);
     if (like || own) {
       lamps.push_back(node);
@@ -159,7 +159,7 @@ bool onlyLampsBefore(const Group &around, const std::vector<Group> &tree,
   the choice.
 */
 double bestBranch(const std::vector<Group> &tree, int node, const cv::Mat_<unsigned char> &lines,
-                  double noise, std::vector<int> &chosen)
+                  const vpBackground &dark, std::vector<int> &chosen)
 {
   const Group &group = tree[node];
   std::vector<int> above;
@@ -167,20 +167,20 @@ double bestBranch(const std::vector<Group> &tree, int node, const cv::Mat_<unsig
   double weight = 0;
   for (int child : group.children) {
     const size_t before = above.size();
-    const double best = bestBranch(tree, child, lines, noise, above);
+    const double best = bestBranch(tree, child, lines, dark, above);
     if (above.size() > before) {
       sum += tree[child].size() * best;
       weight += tree[child].size();
     }
   }
-  const bool stands = significant(group, noise);
+  const bool stands = significant(group, dark.noise);
   // A lamp that reaches beyond it shows what this one has lost to the ceiling.
   const bool larger = std::any_of(above.begin(), above.end(), [&](int lamp) {
     const vpLedRoi &roi = tree[lamp].roi;
     return roi.lampness > likeALamp && (roi.box | group.roi.box) != group.roi.box;
   });
   bool better = weight > 0 && (!stands || sum / weight > group.roi.lampness + (larger ? -margin : margin));
-  if (weight > 0 && !better && onlyLampsBefore(group, tree, lines, above)) {
+  if (weight > 0 && !better && onlyLampsBefore(group, tree, lines, dark, above)) {
     better = true;
     sum = weight = 0;
     for (int lamp : above) {
@@ -353,7 +353,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
   std::vector<int> chosen;
   for (size_t node = 0; node < tree.size(); ++node) {
     if (tree[node].parent < 0) {
-      bestBranch(tree, static_cast<int>(node), lines, dark.noise, chosen);
+      bestBranch(tree, static_cast<int>(node), lines, dark, chosen);
     }
   }
   std::vector<Group> large;

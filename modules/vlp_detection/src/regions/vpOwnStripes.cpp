@@ -13,9 +13,10 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! Standard deviation of the mean light of lines, grey levels.
-double swing(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
+//! Depth of stripes: standard deviation of the light of lines as a share of its mean.
+double depth(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, double dark)
 {
+  static const double least = 1; // grey levels
   double sum = 0, squares = 0;
   for (int y = box.y; y < box.br().y; ++y) {
     const double light = static_cast<double>(vpBrighter::sum(lines[y] + box.x, box.width)) / box.width;
@@ -23,7 +24,7 @@ double swing(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
     squares += light * light;
   }
   const double mean = sum / box.height;
-  return std::sqrt(std::max(0.0, squares / box.height - mean * mean));
+  return std::sqrt(std::max(0.0, squares / box.height - mean * mean)) / std::max(mean - dark, least);
 }
 
 //! Whether a region is lit on most lines of a box, not only to both sides of it, as a ring about its hole.
@@ -40,7 +41,7 @@ bool fills(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, const cv::
 }
 } // namespace
 
-bool vpOwnStripes(const vpLedRoi &roi, const vpLedRoi &around, const cv::Mat_<unsigned char> &lines)
+bool vpOwnStripes(const vpLedRoi &roi, const vpLedRoi &around, const cv::Mat_<unsigned char> &lines, double dark)
 {
   static const double several = 4;
   const cv::Rect &box = roi.box;
@@ -56,10 +57,10 @@ bool vpOwnStripes(const vpLedRoi &roi, const vpLedRoi &around, const cv::Mat_<un
   for (const int x : {box.x - away - wide, box.br().x + away}) {
     const cv::Rect flank(x, middle.y, wide, middle.height);
     if (x >= 0 && flank.br().x <= lines.cols && fills(around, lines, flank)) {
-      beside = std::max(beside, swing(lines, flank));
+      beside = std::max(beside, depth(lines, flank, dark));
     }
   }
-  return beside >= 0 && swing(lines, middle) > several * beside;
+  return beside >= 0 && depth(lines, middle, dark) > several * beside;
 }
 
 END_VISP_NAMESPACE

@@ -121,17 +121,21 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
       continue;
     }
     std::vector<cv::Rect> others;
-    for (const Region &other : regions) {
-      if (&other != &region && !mayBlinkAlike(region.lamp, other.lamp)) {
-        others.push_back(other.roi.box);
+    std::vector<char> part(regions.size(), 0);
+    const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
+    static const double alike = 0.6; // share of a part's light
+    for (size_t k = 0; k < regions.size(); ++k) {
+      part[k] = k != i && mayBlinkAlike(region.lamp, regions[k].lamp) &&
+                vpBlinkingLight::share(picture.grey, lit, regions[k].roi.box) > alike;
+      if (k != i && part[k] == 0) {
+        others.push_back(regions[k].roi.box);
       }
     }
-    complete(picture, region, others);
+    complete(picture, lit, others, region);
     const cv::Rect box = region.roi.box;
-    const vpLampObservation lamp = region.lamp;
     for (size_t k = regions.size(); k-- > 0;) {
       const cv::Rect &other = regions[k].roi.box;
-      if (k != i && 2 * (box & other).area() > other.area() && mayBlinkAlike(lamp, regions[k].lamp)) {
+      if (part[k] != 0 && 2 * (box & other).area() > other.area()) {
         regions.erase(regions.begin() + static_cast<long>(k));
         i -= k < i ? 1 : 0;
       }
@@ -140,10 +144,9 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
 }
 
 //! All the light that blinks as the region does.
-void vpLedDetector::complete(const vpLinePicture &picture, Region &region,
-                             const std::vector<cv::Rect> &others) const
+void vpLedDetector::complete(const vpLinePicture &picture, const std::vector<float> &lit,
+                             const std::vector<cv::Rect> &others, Region &region) const
 {
-  const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
   const std::optional<vpBlinkingLight::Extent> extent =
       vpBlinkingLight::about(picture.grey, lit, region.roi, others);
   if (!extent) {

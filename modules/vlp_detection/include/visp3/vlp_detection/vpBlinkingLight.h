@@ -35,6 +35,12 @@ public:
     of the lamp. \param others Boxes of other lamps, whose light does not count. \return The light that blinks like that and hangs together with the seed, dark patches of
     half the seed's size apart; nothing where that has no shape of a lamp.
   */
+  /*!
+    How much of a region's light keeps to the lines on which the lamp is lit: 1 all of what does blink so, 0 no
+    more of it than chance has.
+  */
+  static double share(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit, const cv::Rect &box);
+
   static std::optional<Extent> about(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
                                      const vpLedRoi &seed, const std::vector<cv::Rect> &others);
 };

@@ -91,7 +91,8 @@ private:
   void recognise(std::vector<Region> &regions);
   void joinPieces(const vpLinePicture &picture, std::vector<Region> &regions);
   void complete(const vpLinePicture &picture, std::vector<Region> &regions);
-  void complete(const vpLinePicture &picture, Region &region, const std::vector<cv::Rect> &others) const;
+  void complete(const vpLinePicture &picture, const std::vector<float> &lit,
+                const std::vector<cv::Rect> &others, Region &region) const;
   void locate(const vpLinePicture &picture, Region &region) const;
   void place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const;
 
