@@ -11,10 +11,10 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Whether the stripes of a region are several times as deep as those of what is lit beside it, on the same
-  lines and within \e around: a lamp before a ceiling or a window that does not blink with it. All parts of
-  one lamp are exposed at the same time and blink alike, so no fragment of a lamp has stripes of its own, however
-  much brighter it is. \param dark Grey value of the picture's darkest places.
+  Whether a region changes from line to line by several times as much as what is lit beside it, on the same
+  lines and within \e around, and unlike it: a lamp before a ceiling or a window that does not blink with it.
+  All parts of one lamp are exposed at the same time and blink alike, so no fragment of a lamp has stripes of
+  its own, however much brighter it is. \param dark Grey value of the picture's darkest places.
 */
 bool vpOwnStripes(const vpLedRoi &roi, const vpLedRoi &around, const cv::Mat_<unsigned char> &lines, double dark);
 

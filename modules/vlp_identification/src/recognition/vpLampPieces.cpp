@@ -58,6 +58,12 @@ bool blinksSomehow(const vpLampObservation &lamp)
   return lamp.features.signal != vpStripeFeatures::Signal::unmodulated && !tells(lamp);
 }
 
+//! Whether an outline is that of a whole lamp beyond doubt: no part of a lamp is an evenly lit ellipse.
+bool isWhole(const vpOutlineFit &fit)
+{
+  return fit.sound && fit.outline.shape == vpLampOutline::Shape::ellipse;
+}
+
 //! px between two boxes, along lines or across, whichever is more; negative where they overlap.
 int gapBetween(const cv::Rect &a, const cv::Rect &b)
 {
@@ -115,9 +121,10 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
   for (size_t i = 0; i < regions.size(); ++i) {
     Region &region = regions[i];
     const bool alone = std::none_of(regions.begin(), regions.end(), [&region](const Region &other) {
-      return &other != &region && neighbours(region.roi, other.roi) && mayBlinkAlike(region.lamp, other.lamp);
+      return &other != &region && !isWhole(other.fit) && neighbours(region.roi, other.roi) &&
+             mayBlinkAlike(region.lamp, other.lamp);
     });
-    if (!tells(region.lamp) || std::isnan(region.lamp.features.phase) || (alone && region.fit.sound && region.fit.outline.shape == vpLampOutline::Shape::ellipse)) {
+    if (!tells(region.lamp) || std::isnan(region.lamp.features.phase) || (alone && isWhole(region.fit))) {
       continue;
     }
     std::vector<cv::Rect> others;
@@ -125,7 +132,7 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
     const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
     static const double alike = 0.6; // share of a part's light
     for (size_t k = 0; k < regions.size(); ++k) {
-      part[k] = k != i && mayBlinkAlike(region.lamp, regions[k].lamp) &&
+      part[k] = k != i && !isWhole(regions[k].fit) && mayBlinkAlike(region.lamp, regions[k].lamp) &&
                 vpBlinkingLight::share(picture.grey, lit, regions[k].roi.box) > alike;
       if (k != i && part[k] == 0) {
         others.push_back(regions[k].roi.box);
