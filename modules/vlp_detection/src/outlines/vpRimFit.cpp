@@ -140,6 +140,20 @@ std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels
   return best;
 }
 
+void vpRimFit::allowForGlow(vpOutlineFit &fit, const Eigen::Vector2d &light)
+{
+  static const double sharp = 0.02; // share of the radius, that half of all edges are known to
+  static const double steep = 4;    // power by which a sharper one is that of the lamp
+  static const double ofLight = 0.05; // share of the radius, standard deviation
+  const double radius = 0.5 * fit.outline.diameter(),
+               glow = 1 / (1 + std::pow(sharp * radius / std::max(fit.blur, 1e-6), steep));
+  const Eigen::Vector2d apart = light - fit.outline.centre;
+  fit.outline.centre += glow * apart;
+  fit.outline.centreCovariance = (1 - glow) * fit.outline.centreCovariance +
+                                 glow * std::pow(ofLight * radius, 2) * Eigen::Matrix2d::Identity() +
+                                 glow * (1 - glow) * apart * apart.transpose();
+}
+
 std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 {
   const double background = backgroundOf(lines, roi);
@@ -158,6 +172,18 @@ std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, c
   std::optional<vpOutlineFit> fit = mostStable(levels, roi.box, chosen);
   if (fit) {
     fit->background = background;
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    double weight = 0;
+    for (const vpLedChord &chord : roi.chords) {
+      for (int x = chord.first; x <= chord.last; ++x) {
+        const double light = std::max(0.0, lines(chord.line, x) - roi.level);
+        sum += light * Eigen::Vector2d(x, chord.line);
+        weight += light;
+      }
+    }
+    if (weight > 0) {
+      allowForGlow(*fit, sum / weight);
+    }
     if (fit->outline.shape == vpLampOutline::Shape::quadrilateral) { // a side along the lines may lie in the dark
       const double gap = vpChordShape::longestGap(roi);
       fit->outline.centreCovariance(1, 1) += gap * gap / 24;

@@ -34,6 +34,13 @@ constexpr double levelRatio = 1.25;
 //! where neither shape comes near to the ends of any.
 std::optional<vpOutlineFit> mostStable(const std::vector<Ends> &levels, const cv::Rect &box, size_t &chosen);
 
+/*!
+  An edge that is no sharper than a lens makes it may be that of a glow, or of a housing that the lamp lights: then
+  the lamp's middle is that of its light. Both are held together, by the probability of each.
+  \param fit By mostStable(). \param light Middle of the light, px.
+*/
+void allowForGlow(vpOutlineFit &fit, const Eigen::Vector2d &light);
+
 //! Of the region's level, and higher ones.
 std::optional<vpOutlineFit> of(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi);
 } // namespace vpRimFit

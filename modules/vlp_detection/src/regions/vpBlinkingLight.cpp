@@ -343,6 +343,22 @@ void addHiddenSides(vpLampOutline &outline, double gap)
   }
 }
 
+//! Middle of the light of some runs, px.
+Eigen::Vector2d middleOf(const std::vector<Run> &runs, const std::vector<Band> &bands, int left)
+{
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weight = 0;
+  for (const Run &run : runs) {
+    const Band &band = bands[run.band];
+    for (int x = run.first; x <= run.last; ++x) {
+      const double light = band.light[static_cast<size_t>(x)] * (band.last - band.first + 1);
+      sum += light * Eigen::Vector2d(left + x, 0.5 * (band.first + band.last));
+      weight += light;
+    }
+  }
+  return sum / std::max(weight, 1e-9);
+}
+
 vpLedRoi regionOf(const std::vector<Run> &outer, const std::vector<Band> &bands, int left, double level)
 {
   vpLedRoi roi;
@@ -411,11 +427,13 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     }
     std::vector<vpRimFit::Ends> levels;
     std::vector<vpLedRoi> regions;
+    std::vector<Eigen::Vector2d> middles;
     for (double level = std::max(least, sigmas * light.noise()); level < most * light.brightest();
          level *= vpRimFit::levelRatio) {
-      const std::vector<Run> outer =
-          outermost(connected(light.runsAbove(level), light.bands(), seed.box - cv::Point(window.x, 0), reach),
-                    light.bands().size());
+      const std::vector<Run> runs =
+          connected(light.runsAbove(level), light.bands(), seed.box - cv::Point(window.x, 0), reach);
+      const std::vector<Run> outer = outermost(runs, light.bands().size());
+      middles.push_back(middleOf(runs, light.bands(), window.x));
       levels.push_back(endsOf(outer, light.bands(), level, window.tl()));
       regions.push_back(regionOf(outer, light.bands(), window.x, seed.level));
     }
@@ -435,6 +453,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     if (extent.fit.outline.shape == vpLampOutline::Shape::quadrilateral) {
       addHiddenSides(extent.fit.outline, vpChordShape::longestGap(extent.roi));
     }
+    vpRimFit::allowForGlow(extent.fit, middles[chosen]);
     extent.fit.background = light.background();
     extent.fit.noise = light.pixelNoise();
     extent.roi.cutAcross = extent.roi.box.x <= 0 || extent.roi.box.br().x >= lines.cols;
