@@ -106,6 +106,18 @@ bool mayBlinkAlike(const vpLampObservation &a, const vpLampObservation &b)
   const double middles = apart - 0.5 * (one.duty - other.duty);
   return std::isnan(middles) || std::abs(std::remainder(middles, 1)) < most + sigmas * unknown;
 }
+
+//! Whether a region shows what another one shows better: both blink alike, and the middle of one lies within
+//! the other.
+bool isDoubleOf(const vpLampObservation &one, const vpLampObservation &other)
+{
+  auto holds = [](const vpLampOutline &outline, const Eigen::Vector2d &point) {
+    const Eigen::Vector4d box = outline.box();
+    return point.x() > box(0) && point.x() < box(2) && point.y() > box(1) && point.y() < box(3);
+  };
+  return tells(one) && tells(other) && one.covariance.trace() > other.covariance.trace() &&
+         mayBlinkAlike(one, other) && (holds(one.outline, other.point) || holds(other.outline, one.point));
+}
 } // namespace
 
 /*!
@@ -115,6 +127,11 @@ bool mayBlinkAlike(const vpLampObservation &a, const vpLampObservation &b)
 void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &regions)
 {
   joinPieces(picture, regions);
+  for (Region &region : regions) {
+    if (blinksSomehow(region.lamp)) {
+      readAround(picture, region);
+    }
+  }
   std::stable_sort(regions.begin(), regions.end(), [](const Region &a, const Region &b) {
     return tells(a.lamp) != tells(b.lamp) ? tells(a.lamp) : a.lamp.features.area > b.lamp.features.area;
   });
@@ -147,6 +164,30 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
         i -= k < i ? 1 : 0;
       }
     }
+  }
+  for (size_t i = regions.size(); i-- > 0;) {
+    const vpLampObservation lamp = regions[i].lamp;
+    if (std::any_of(regions.begin(), regions.end(),
+                    [&lamp](const Region &other) { return isDoubleOf(lamp, other.lamp); })) {
+      regions.erase(regions.begin() + static_cast<long>(i));
+    }
+  }
+}
+
+//! The bright part of a lamp may show too few stripes, and the dim rest about it enough.
+void vpLedDetector::readAround(const vpLinePicture &picture, Region &region) const
+{
+  static const double explained = 0.05; // misfit
+  vpLedRoi around = region.roi;
+  const int by = sizeOf(around.box) / 2;
+  around.box = cv::Rect(around.box.x - by, around.box.y - by, around.box.width + 2 * by,
+                        around.box.height + 2 * by) &
+               cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
+  const vpStripeFeatures features = agreedStripes(picture, vpOutlineFitter::boxOf(around), around);
+  if (vpLedIdEvidence::tells(features) && features.misfit < explained) {
+    const double area = region.lamp.features.area;
+    region.lamp.features = features;
+    region.lamp.features.area = area;
   }
 }
 

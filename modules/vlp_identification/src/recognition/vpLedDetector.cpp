@@ -302,16 +302,21 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   if ((tells && features.misfit < explained) || features.modulation < stripeAnalyzer.minModulation) {
     return features;
   }
-  // What the lines' means hide the columns may agree on.
+  const vpStripeFeatures other = agreedStripes(picture, fit, roi);
+  return vpLedIdEvidence::tells(other) && (!tells || other.misfit < features.misfit) ? other : features;
+}
+
+//! What the lines' means hide the columns may agree on. Nothing of fewer than three stripes: any texture has
+//! two shades that some columns agree on.
+vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, const vpOutlineFit &fit,
+                                              const vpLedRoi &roi) const
+{
+  static const unsigned int few = 3;
   vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
   agreed.exposure = m_exposure.exposure();
   agreed.logExposureSigma = m_exposure.logSigma();
-  const vpStripeFeatures other = stripeAnalyzer.analyze(agreed);
-  // Any texture has two shades that some columns agree on.
-  static const unsigned int few = 3;
-  return other.stripes >= few && vpLedIdEvidence::tells(other) && (!tells || other.misfit < features.misfit)
-             ? other
-             : features;
+  const vpStripeFeatures features = stripeAnalyzer.analyze(agreed);
+  return features.stripes >= few ? features : vpStripeFeatures();
 }
 
 /*!

@@ -87,9 +87,12 @@ private:
   void read(const vpLinePicture &picture, Region &region) const;
   vpStripeFeatures stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
                              const vpLedRoi &roi) const;
+  vpStripeFeatures agreedStripes(const vpLinePicture &picture, const vpOutlineFit &fit,
+                                 const vpLedRoi &roi) const;
   void shareExposure(const vpLinePicture &picture, std::vector<Region> &regions);
   void recognise(std::vector<Region> &regions);
   void joinPieces(const vpLinePicture &picture, std::vector<Region> &regions);
+  void readAround(const vpLinePicture &picture, Region &region) const;
   void complete(const vpLinePicture &picture, std::vector<Region> &regions);
   void complete(const vpLinePicture &picture, const std::vector<float> &lit,
                 const std::vector<cv::Rect> &others, Region &region) const;
