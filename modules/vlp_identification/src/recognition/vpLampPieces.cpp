@@ -127,42 +127,13 @@ bool isDoubleOf(const vpLampObservation &one, const vpLampObservation &other)
 void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &regions)
 {
   joinPieces(picture, regions);
-  for (Region &region : regions) {
-    if (blinksSomehow(region.lamp)) {
-      readAround(picture, region);
-    }
-  }
   std::stable_sort(regions.begin(), regions.end(), [](const Region &a, const Region &b) {
     return tells(a.lamp) != tells(b.lamp) ? tells(a.lamp) : a.lamp.features.area > b.lamp.features.area;
   });
   for (size_t i = 0; i < regions.size(); ++i) {
-    Region &region = regions[i];
-    const bool alone = std::none_of(regions.begin(), regions.end(), [&region](const Region &other) {
-      return &other != &region && !isWhole(other.fit) && neighbours(region.roi, other.roi) &&
-             mayBlinkAlike(region.lamp, other.lamp);
-    });
-    if (!tells(region.lamp) || std::isnan(region.lamp.features.phase) || (alone && isWhole(region.fit))) {
-      continue;
-    }
-    std::vector<cv::Rect> others;
-    std::vector<char> part(regions.size(), 0);
-    const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
-    static const double alike = 0.6; // share of a part's light
-    for (size_t k = 0; k < regions.size(); ++k) {
-      part[k] = k != i && !isWhole(regions[k].fit) && mayBlinkAlike(region.lamp, regions[k].lamp) &&
-                vpBlinkingLight::share(picture.grey, lit, regions[k].roi.box) > alike;
-      if (k != i && part[k] == 0) {
-        others.push_back(regions[k].roi.box);
-      }
-    }
-    complete(picture, lit, others, region);
-    const cv::Rect box = region.roi.box;
-    for (size_t k = regions.size(); k-- > 0;) {
-      const cv::Rect &other = regions[k].roi.box;
-      if (part[k] != 0 && 2 * (box & other).area() > other.area()) {
-        regions.erase(regions.begin() + static_cast<long>(k));
-        i -= k < i ? 1 : 0;
-      }
+    completeOne(picture, regions, i);
+    if (blinksSomehow(regions[i].lamp) && readAround(picture, regions[i])) {
+      completeOne(picture, regions, i);
     }
   }
   for (size_t i = regions.size(); i-- > 0;) {
@@ -174,21 +145,56 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
   }
 }
 
-//! The bright part of a lamp may show too few stripes, and the dim rest about it enough.
-void vpLedDetector::readAround(const vpLinePicture &picture, Region &region) const
+//! One region with the others that are parts of the same lamp. \param i Of the region; changes as these go.
+void vpLedDetector::completeOne(const vpLinePicture &picture, std::vector<Region> &regions, size_t &i) const
 {
-  static const double explained = 0.05; // misfit
+  static const double alike = 0.6; // share of a part's light
+  const Region region = regions[i];
+  const bool alone = std::none_of(regions.begin(), regions.end(), [&](const Region &other) {
+    return &other != &regions[i] && !isWhole(other.fit) && neighbours(region.roi, other.roi) &&
+           mayBlinkAlike(region.lamp, other.lamp);
+  });
+  if (std::isnan(region.lamp.features.phase) || (alone && tells(region.lamp) && isWhole(region.fit))) {
+    return;
+  }
+  const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
+  std::vector<cv::Rect> others;
+  std::vector<char> part(regions.size(), 0);
+  for (size_t k = 0; k < regions.size(); ++k) {
+    const Region &other = regions[k];
+    part[k] = k != i && !isWhole(other.fit) && mayBlinkAlike(region.lamp, other.lamp) &&
+              vpBlinkingLight::share(picture.grey, lit, other.roi.box) > alike;
+    if (k != i && part[k] == 0) {
+      others.push_back(other.roi.box);
+    }
+  }
+  complete(picture, lit, others, regions[i]);
+  const cv::Rect box = regions[i].roi.box;
+  for (size_t k = regions.size(); k-- > 0;) {
+    const cv::Rect &other = regions[k].roi.box;
+    if (part[k] != 0 && 2 * (box & other).area() > other.area()) {
+      regions.erase(regions.begin() + static_cast<long>(k));
+      i -= k < i ? 1 : 0;
+    }
+  }
+}
+
+//! The bright part of a lamp may show too few stripes, and the dim rest about it more.
+bool vpLedDetector::readAround(const vpLinePicture &picture, Region &region) const
+{
   vpLedRoi around = region.roi;
-  const int by = sizeOf(around.box) / 2;
+  const int by = sizeOf(around.box);
   around.box = cv::Rect(around.box.x - by, around.box.y - by, around.box.width + 2 * by,
                         around.box.height + 2 * by) &
                cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
   const vpStripeFeatures features = agreedStripes(picture, vpOutlineFitter::boxOf(around), around);
-  if (vpLedIdEvidence::tells(features) && features.misfit < explained) {
-    const double area = region.lamp.features.area;
-    region.lamp.features = features;
-    region.lamp.features.area = area;
+  if (std::isnan(features.phase) || features.stripes <= region.lamp.features.stripes) {
+    return false;
   }
+  const double area = region.lamp.features.area;
+  region.lamp.features = features;
+  region.lamp.features.area = area;
+  return true;
 }
 
 //! All the light that blinks as the region does.
@@ -211,6 +217,9 @@ void vpLedDetector::complete(const vpLinePicture &picture, const std::vector<flo
   }
   read(picture, whole);
   if (!tells(whole.lamp) || !mayBlinkAlike(whole.lamp, region.lamp)) {
+    if (!tells(region.lamp)) {
+      return; // of what neither tells nothing is known to blink alike
+    }
     whole.lamp.features = region.lamp.features;
   }
   locate(picture, whole);

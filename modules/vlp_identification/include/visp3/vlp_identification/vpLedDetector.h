@@ -92,8 +92,9 @@ private:
   void shareExposure(const vpLinePicture &picture, std::vector<Region> &regions);
   void recognise(std::vector<Region> &regions);
   void joinPieces(const vpLinePicture &picture, std::vector<Region> &regions);
-  void readAround(const vpLinePicture &picture, Region &region) const;
+  bool readAround(const vpLinePicture &picture, Region &region) const;
   void complete(const vpLinePicture &picture, std::vector<Region> &regions);
+  void completeOne(const vpLinePicture &picture, std::vector<Region> &regions, size_t &i) const;
   void complete(const vpLinePicture &picture, const std::vector<float> &lit,
                 const std::vector<cv::Rect> &others, Region &region) const;
   void locate(const vpLinePicture &picture, Region &region) const;
