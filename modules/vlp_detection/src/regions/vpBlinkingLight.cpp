@@ -449,7 +449,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     if (!fit) {
       return std::nullopt;
     }
-    Extent extent{regions[chosen], *fit};
+    Extent extent{regions[chosen], *fit, regions.front()};
     if (extent.fit.outline.shape == vpLampOutline::Shape::quadrilateral) {
       addHiddenSides(extent.fit.outline, vpChordShape::longestGap(extent.roi));
     }

@@ -131,9 +131,13 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
     return tells(a.lamp) != tells(b.lamp) ? tells(a.lamp) : a.lamp.features.area > b.lamp.features.area;
   });
   for (size_t i = 0; i < regions.size(); ++i) {
+    const bool told = tells(regions[i].lamp);
     completeOne(picture, regions, i);
     if (blinksSomehow(regions[i].lamp) && readAround(picture, regions[i])) {
       completeOne(picture, regions, i);
+    }
+    if (!told && tells(regions[i].lamp)) {
+      completeOne(picture, regions, i); // by what the rest of it says
     }
   }
   for (size_t i = regions.size(); i-- > 0;) {
@@ -218,7 +222,14 @@ void vpLedDetector::complete(const vpLinePicture &picture, const std::vector<flo
   read(picture, whole);
   if (!tells(whole.lamp) || !mayBlinkAlike(whole.lamp, region.lamp)) {
     if (!tells(region.lamp)) {
-      return; // of what neither tells nothing is known to blink alike
+      const vpStripeFeatures all =
+          agreedStripes(picture, vpOutlineFitter::boxOf(extent->widest), extent->widest);
+      if (vpLedIdEvidence::tells(all)) {
+        const double area = region.lamp.features.area;
+        region.lamp.features = all;
+        region.lamp.features.area = area;
+      }
+      return;
     }
     whole.lamp.features = region.lamp.features;
   }

@@ -28,6 +28,7 @@ public:
   struct Extent {
     vpLedRoi roi;
     vpOutlineFit fit;
+    vpLedRoi widest; // all the light that is beyond noise
   };
 
   /*!
