@@ -92,6 +92,7 @@ Cells measure(const vpVlpRig &rig, double frequency, double duty, int phases)
   const double step = std::abs(rig.lineTiming().meanLineTime());
   vpRunTrials(phases, [&](int k, std::mt19937_64 &generator) {
     const double phase = static_cast<double>(k) / phases;
+    if (std::getenv("PHASE") && std::atoi(std::getenv("PHASE")) != k) return;
     const vpStripeProfile profile = profileOf(rig, frequency, duty, phase, generator);
     vpStripeAnalyzer analyzer;
     analyzer.searchTwoPulses = false;
@@ -134,6 +135,9 @@ void table(const char *title, const vpVlpRig &rig, int phases)
               "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
               title);
   // The last four are near 1/5, 1/4 and 1/3 of the picture's line rate of 9063 Hz, and at 1/10 of the sensor's.
+  if (const char *only = std::getenv("ONLY")) {
+    double f, d; std::sscanf(only, "%lf,%lf", &f, &d);
+    const Cells cells = measure(rig, f, d, phases); std::printf("| %.0f | %.2f | %d |", f, d, cells.told.lost); cells.told.print(); cells.exact.print(); std::printf("\n"); return; }
   for (double frequency : {1130., 1500., 2000., 2890., 1814., 2269., 3018., 2320.}) {
     for (double duty : {0.2, 0.35, 0.5, 0.65, 0.8}) {
       const Cells cells = measure(rig, frequency, duty, phases);

@@ -61,8 +61,8 @@ public:
                               log + e * size[3]}, 0});
           }
     static const int levels = 6;
-    static const size_t enough = 30000; // boxes: more of them would tell no more
-    double margin = 600;                // chi-square of half a box, about: a quarter of that at half the size
+    static const size_t enough = 100000; // boxes: more of them would tell no more
+    double margin = 600;                 // chi-square of half a box, about: a quarter at half the size
     for (int level = 0; level < levels; ++level, margin /= 4) {
       evaluate(boxes, explained + margin);
       if (level + 1 == levels || boxes.size() > enough) {
@@ -70,7 +70,7 @@ public:
       }
       halve(boxes, size);
     }
-    return momentsOf(boxes);
+    return momentsOf(boxes, size);
   }
 
 private:
@@ -108,7 +108,7 @@ private:
     }
   }
 
-  static Estimate momentsOf(const std::vector<Box> &boxes)
+  static Estimate momentsOf(const std::vector<Box> &boxes, const Place &size)
   {
     const Box &some = boxes.front();
     double least = std::numeric_limits<double>::infinity(), sum = 0, first[2] = {0, 0}, second[2] = {0, 0};
@@ -124,14 +124,16 @@ private:
         second[k] += weight * off[k] * off[k];
       }
     }
-    auto sigma = [&](int k) { return std::sqrt(std::max(0.0, second[k] / sum - std::pow(first[k] / sum, 2))); };
-    return {some.at[0] + first[0] / sum, sigma(0), some.at[2] + first[1] / sum, sigma(1)};
+    auto sigma = [&](int k, double box) {
+      return std::sqrt(std::max(0.0, second[k] / sum - std::pow(first[k] / sum, 2)) + box * box / 12);
+    };
+    return {some.at[0] + first[0] / sum, sigma(0, size[0]), some.at[2] + first[1] / sum, sigma(1, size[2])};
   }
 
-  //! Lit time from 0 to \e x periods.
+  //! Lit time from 0 to \e x > 0 periods.
   static double litUntil(double x, double duty)
   {
-    const double whole = std::floor(x);
+    const double whole = static_cast<int>(x);
     return whole * duty + std::min(x - whole, duty);
   }
 
@@ -145,7 +147,8 @@ private:
     const double variance = m_profile.sigma.front() * m_profile.sigma.front();
     double n = variance / (m_glow * m_glow), x = 0, y = 0, xx = 0, xy = 0, yy = 0;
     for (size_t i = 0; i < m_profile.light.size(); ++i) {
-      const double turns = f * (m_profile.time[i] - m_middle) + at[1],
+      static const double many = 1000; // whole periods: all times are after time 0
+      const double turns = f * (m_profile.time[i] - m_middle) + at[1] + many,
                    share = (litUntil(turns + half, duty) - litUntil(turns - half, duty)) / (2 * half),
                    light = m_profile.light[i];
       n += 1;

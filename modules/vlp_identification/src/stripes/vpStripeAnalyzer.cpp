@@ -5,6 +5,7 @@
 #include <visp3/vlp_identification/vpStripeAnalyzer.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -98,6 +99,7 @@ private:
 //! The best of several starts.
 void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 {
+  if (getenv("TRACE")) fprintf(stderr, "  fit %.1f Hz duty %.4f exp %.1f cost %.1f misfit %.4f hollow %d\n", fit.value(vpWaveformFit::frequency), fit.value(vpWaveformFit::duty), 1e6*fit.value(vpWaveformFit::exposure), fit.cost(), fit.misfit(), (int)fit.hollow());
   if ((!best || fit.cost() < best->cost()) && !fit.hollow()) {
     best.emplace(std::move(fit));
   }
@@ -122,8 +124,10 @@ std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency
 std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start)
 {
   std::optional<vpWaveformFit> best;
+  if (getenv("TRACE")) for (auto &c : start.candidates()) fprintf(stderr, " candidate %.1f gain %.1f\n", c.frequency, c.gain);
   if (start.pulses) {
     const vpStripeStarts::Pulses &pulses = *start.pulses;
+  if (getenv("TRACE")) fprintf(stderr, " pulses %.1f duty %.4f\n", pulses.frequency, pulses.duty);
     for (double exposure : exposuresOf(profile, pulses.frequency)) {
       vpWaveformFit fit(profile, start.settings, start.envelope);
       if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
@@ -136,15 +140,22 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start
     }
   }
   for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
+    std::optional<vpWaveformFit> found;
     for (double exposure : exposuresOf(profile, candidate.frequency)) {
       for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
         vpWaveformFit fit(profile, start.settings, start.envelope);
         // The first harmonic peaks in the middle of the pulse.
         if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure) &&
             fit.preferStatedExposure()) {
-          keepBetter(best, std::move(fit));
+          keepBetter(found, std::move(fit));
         }
       }
+    }
+    if (found) {
+      if (found->misfit() > allExplained) {
+        found->leaveGap();
+      }
+      keepBetter(best, std::move(*found));
     }
   }
   return best;
@@ -331,8 +342,18 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   features.misfit = 1; // where no pulses explain anything
   Start *start = &byAll;
-  std::optional<Start> byPeriod;
+  std::optional<Start> evenly, byPeriod;
   std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
+  if (order > 0 && !getenv("NOEVEN")) {
+    const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
+    evenly.emplace(profile, std::vector<double>(profile.light.size(), std::max(1.0, brightest)), 0, *this);
+    if (getenv("TRACE")) fprintf(stderr, "evenly\n");
+    std::optional<vpWaveformFit> other = fitPwm(profile, *evenly);
+    if (other && (!pwm || other->criterion() < pwm->criterion())) {
+      pwm = std::move(other);
+      start = &*evenly;
+    }
+  }
   if ((!pwm || pwm->misfit() > allExplained) && !byAll.candidates().empty()) {
     // An emitter of any pattern is as bright as the brightest that a period shows.
     const double frequency = byAll.candidates().front().frequency,

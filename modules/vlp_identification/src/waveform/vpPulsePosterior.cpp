@@ -23,13 +23,17 @@ struct Axis {
 
   double step() const { return count > 1 ? 2 * reach / (count - 1) : 0; }
   double at(int i) const { return count > 1 ? middle - reach + i * step() : middle; }
-  //! The same over places \e first to \e last and a step beyond.
+  //! The same over places \e first to \e last and a step beyond; where these are most of it, more finely.
   void narrow(int first, int last)
   {
     if (count == 1) {
       return;
     }
     const double from = at(first) - step(), to = at(last) + step();
+    static const int most = 40;
+    if (2 * (last - first) > count && count < most) {
+      count = 2 * count - 1;
+    }
     middle = 0.5 * (from + to);
     reach = 0.5 * (to - from);
   }
@@ -162,6 +166,22 @@ void vpPulsePosterior::evaluate(const Range &range)
   }
 }
 
+/*!
+  By how much chi-square may change from a place of the grid to half the way to the next: an edge that moves by
+  a share of the exposure changes the light of the line that sees it by as large a share.
+*/
+double vpPulsePosterior::changeBetween(const Range &range) const
+{
+  // Along the profile a frequency's move is a third in the mean square; of a length each edge moves by half.
+  const double moved = (std::pow(range.frequency.step(), 2) / 3 + std::pow(range.delay.step(), 2) +
+                        std::pow(0.5 * range.length.step(), 2)) /
+                       4;
+  const double seen = std::min(1.0, m_lines.exposure / m_lines.step), // share of the edges
+      edges = 2 * static_cast<double>(m_pulses.size()) * seen;
+  const double weight = (m_lines.weight * m_lines.lit.square()).mean();
+  return edges * weight * moved / (m_lines.exposure * m_lines.exposure);
+}
+
 vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eigen::Vector3d &start,
                                                   bool freeDuty, double inflation)
 {
@@ -185,9 +205,10 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
     posterior.evaluate(range);
     const std::vector<float> &chiSquares = posterior.m_chiSquares;
     const float least = *std::min_element(chiSquares.begin(), chiSquares.end());
-    // Places between those of a coarse grid may be better: as many as half the way between two lets hope for.
-    static const double explained = 30;
-    const auto limit = static_cast<float>(least + explained * inflation);
+    // Places between those of a coarse grid may be better, by as much as edges move on the way to them.
+    static const double explained = 25;
+    const double between = posterior.changeBetween(range);
+    const auto limit = static_cast<float>(least + explained * inflation + between);
     int first[3] = {1 << 20, 1 << 20, 1 << 20}, last[3] = {-1, -1, -1};
     double sum = 0;
     Eigen::Vector3d ofFirst = Eigen::Vector3d::Zero();
@@ -218,10 +239,11 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
     const auto cell = [](const Axis &axis) { return axis.count > 1 ? axis.step() : 1; };
     moments.logEvidence = std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) -
                           0.5 * least / inflation;
+    if (getenv("TRACE")) fprintf(stderr, "    round %d least %.1f between %.1f places f %d-%d/%d d %d-%d/%d l %d-%d/%d steps %.1f %.1f %.1f us\n", round, least, between, first[0], last[0], range.frequency.count, first[1], last[1], range.delay.count, first[2], last[2], range.length.count, 1e6*range.frequency.step(), 1e6*range.delay.step(), 1e6*range.length.step());
     const bool filled = 2 * (last[0] - first[0]) >= range.frequency.count &&
                         2 * (last[1] - first[1]) >= range.delay.count &&
                         (!freeDuty || 2 * (last[2] - first[2]) >= range.length.count);
-    if (filled) {
+    if (filled && between < explained * inflation) {
       break;
     }
     range.frequency.narrow(first[0], last[0]);

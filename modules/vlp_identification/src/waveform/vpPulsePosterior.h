@@ -55,6 +55,7 @@ private:
   struct Pulse;
   vpPulsePosterior(const Lines &lines, const Eigen::Vector3d &start);
   void evaluate(const Range &range);
+  double changeBetween(const Range &range) const;
   void tabulate(const Range &range, double length);
   void addPulses(const Range &range, double ofFrequency);
 

@@ -65,6 +65,10 @@ public:
   */
   bool preferStatedExposure();
 
+  //! Where the lines leave gaps, an edge that no line sees leads no descent out of its gap: goes on from the
+  //! likeliest places about the minimum.
+  void leaveGap();
+
   //! Turns values and standard deviations into those of the posterior about the minimum that run() found.
   void integrate();
 
@@ -94,6 +98,8 @@ public:
   bool hollow() const;
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
+  //! The same with what its linear parameters have to explain to be worth it (Schwarz 1978).
+  double criterion() const { return m_cost + m_linear * std::log(static_cast<double>(m_time.size())); }
   //! Share of the stripes' power left unexplained, beyond what noise explains.
   double misfit() const;
 
@@ -118,6 +124,7 @@ private:
   Posterior onGrid(const Posterior &bell);
   std::vector<double> likelyExposures(const Posterior &bell) const;
   vpPulsePosterior::Moments momentsAt(double exposed) const;
+  bool goOnFrom(const vpPulsePosterior::Moments &moments);
   Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);
   double slice(const Vector &axis, double width, double level, Vector &x, double &here, Uniform &uniform);
   void judgeResiduals();

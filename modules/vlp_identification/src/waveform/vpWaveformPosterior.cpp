@@ -207,6 +207,33 @@ double vpWaveformFit::frequencyNoise() const
   return gap() > 0 || repeats() ? std::min(m_sigma(frequency), sinusoidSigma()) : m_sigma(frequency);
 }
 
+//! Descends from there where that is far below the minimum at m_x. \return Whether it is another minimum.
+bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
+{
+  static const double deeper = 0.8;
+  if (!(moments.chiSquare < deeper * m_chiSquare)) {
+    return false;
+  }
+  const Vector before = m_x;
+  const double least = m_cost;
+  m_x.head<3>() = moments.mean;
+  descend(10);
+  if (m_cost < deeper * least) {
+    judgeResiduals();
+    return true;
+  }
+  m_x = before;
+  settle();
+  return false;
+}
+
+void vpWaveformFit::leaveGap()
+{
+  if (gap() > 0) {
+    goOnFrom(momentsAt(m_x(exposure)));
+  }
+}
+
 //! Mean and covariance of exp(-cost / (2 inflation)) of one pulse a period, by all places on a grid, for each
 //! of the exposures that there may be.
 vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
@@ -215,19 +242,8 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
   std::vector<double> logs;
   for (const double exposed : likelyExposures(bell)) {
     const vpPulsePosterior::Moments moments = momentsAt(exposed);
-    static const double deeper = 0.8;
-    if (parts.empty() &&
-        moments.chiSquare < deeper * m_chiSquare) { // another minimum than the one that was known
-      const Vector before = m_x;
-      const double least = m_cost;
-      m_x.head<3>() = moments.mean;
-      descend(10);
-      if (m_cost < deeper * least) {
-        judgeResiduals();
-        return onGrid(bell);
-      }
-      m_x = before;
-      settle();
+    if (parts.empty() && goOnFrom(moments)) {
+      return onGrid(bell);
     }
     Posterior part = bell;
     part.mean.head<3>() = moments.mean;
