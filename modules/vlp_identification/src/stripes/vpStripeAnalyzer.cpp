@@ -348,6 +348,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
     evenly.emplace(profile, std::vector<double>(profile.light.size(), std::max(1.0, brightest)), 0, *this);
     if (getenv("TRACE")) fprintf(stderr, "evenly\n");
+    evenly->pulses = byAll.pulses ? byAll.pulses : evenly->pulses;
     std::optional<vpWaveformFit> other = fitPwm(profile, *evenly);
     if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);
