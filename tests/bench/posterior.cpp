@@ -45,8 +45,9 @@ struct Cell {
 
   void print() const
   {
-    std::printf(" %.2f | %.2f | %.2f (%.1f) | %.4f | %.4f | %.2f (%.1f) |", frequency.rms(), frequency.sigma(),
-                frequency.ownRms(), frequency.worst, duty.rms(), duty.sigma(), duty.ownRms(), duty.worst);
+    std::printf(" %.2f | %.2f | %.2f (%.1f) | %.4f | %.4f | %.2f (%.1f) |", frequency.rms(),
+                frequency.sigma(), frequency.ownRms(), frequency.worst, duty.rms(), duty.sigma(),
+                duty.ownRms(), duty.worst);
   }
 };
 
@@ -90,54 +91,44 @@ Cells measure(const vpVlpRig &rig, double frequency, double duty, int phases)
   Cells cells;
   std::mutex guard;
   const double step = std::abs(rig.lineTiming().meanLineTime());
-  vpRunTrials(phases, [&](int k, std::mt19937_64 &generator) {
-    const double phase = static_cast<double>(k) / phases;
-    if (std::getenv("PHASE") && std::atoi(std::getenv("PHASE")) != k) return;
-    const vpStripeProfile profile = profileOf(rig, frequency, duty, phase, generator);
-    vpStripeAnalyzer analyzer;
-    analyzer.searchTwoPulses = false;
-    const vpStripeFeatures seen = analyzer.analyze(profile);
-    static const double glow = 0.05; // of the lit lamp
-    const double middle = 0.5 * (profile.time.front() + profile.time.back()),
-                 begin = profile.time.front() - profile.exposure / 2;
-    const vpExactPosterior::Estimate best =
-        vpExactPosterior(profile, step, glow * 2 * amplitude)
-            .about(frequency, phase + frequency * (middle - begin), duty, profile.exposure);
-    const std::lock_guard<std::mutex> lock(guard);
-    if (seen.signal != vpStripeFeatures::Signal::pwm || !(seen.frequencySigma < 0.1 * seen.frequency)) {
-      ++cells.told.lost;
-      return;
-    }
-    cells.told.frequency.add(seen.frequency - frequency, seen.frequencySigma);
-    cells.told.duty.add(seen.duty - duty, seen.dutySigma);
-    cells.exact.frequency.add(best.frequency - frequency, best.frequencySigma);
-    cells.exact.duty.add(best.duty - duty, best.dutySigma);
-    static const double odd = 4; // standard deviations
-    if (std::getenv("VERBOSE") &&
-        (std::abs(seen.duty - duty) > odd * seen.dutySigma ||
-         std::abs(seen.frequency - frequency) > odd * seen.frequencySigma)) {
-      std::fprintf(stderr,
-                   "%.0f Hz, %.2f, phase %d/%d: %.2f (%.2f) Hz, duty %.4f (%.4f), exposure %.1f (%.1f) us, misfit %.4f; "
-                   "exact: %.2f (%.2f) Hz, duty %.4f (%.4f)\n",
-                   frequency, duty, k, phases, seen.frequency, seen.frequencySigma, seen.duty, seen.dutySigma,
-                   1e6 * seen.exposure, 1e6 * seen.exposureSigma, seen.misfit, best.frequency,
-                   best.frequencySigma, best.duty, best.dutySigma);
-    }
-  }, static_cast<unsigned int>(frequency + 1e6 * duty));
+  vpRunTrials(
+      phases,
+      [&](int k, std::mt19937_64 &generator) {
+        const double phase = static_cast<double>(k) / phases;
+        const vpStripeProfile profile = profileOf(rig, frequency, duty, phase, generator);
+        vpStripeAnalyzer analyzer;
+        analyzer.searchTwoPulses = false;
+        const vpStripeFeatures seen = analyzer.analyze(profile);
+        static const double glow = 0.05; // of the lit lamp
+        const double middle = 0.5 * (profile.time.front() + profile.time.back()),
+                     begin = profile.time.front() - profile.exposure / 2;
+        const vpExactPosterior::Estimate best =
+            vpExactPosterior(profile, step, glow * 2 * amplitude)
+                .about(frequency, phase + frequency * (middle - begin), duty, profile.exposure);
+        const std::lock_guard<std::mutex> lock(guard);
+        if (seen.signal != vpStripeFeatures::Signal::pwm || !(seen.frequencySigma < 0.1 * seen.frequency)) {
+          ++cells.told.lost;
+          return;
+        }
+        cells.told.frequency.add(seen.frequency - frequency, seen.frequencySigma);
+        cells.told.duty.add(seen.duty - duty, seen.dutySigma);
+        cells.exact.frequency.add(best.frequency - frequency, best.frequencySigma);
+        cells.exact.duty.add(best.duty - duty, best.dutySigma);
+      },
+      static_cast<unsigned int>(frequency + 1e6 * duty));
   return cells;
 }
 
 void table(const char *title, const vpVlpRig &rig, int phases)
 {
-  std::printf("\n%s\n\n"
-              "| Hz | duty | lost | f: error | sigma | own sigmas, rms (max) | duty: error | sigma | own sigmas | "
-              "exact f: error | sigma | own sigmas | exact duty: error | sigma | own sigmas |\n"
-              "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-              title);
-  // The last four are near 1/5, 1/4 and 1/3 of the picture's line rate of 9063 Hz, and at 1/10 of the sensor's.
-  if (const char *only = std::getenv("ONLY")) {
-    double f, d; std::sscanf(only, "%lf,%lf", &f, &d);
-    const Cells cells = measure(rig, f, d, phases); std::printf("| %.0f | %.2f | %d |", f, d, cells.told.lost); cells.told.print(); cells.exact.print(); std::printf("\n"); return; }
+  std::printf(
+      "\n%s\n\n"
+      "| Hz | duty | lost | f: error | sigma | own sigmas, rms (max) | duty: error | sigma | own sigmas | "
+      "exact f: error | sigma | own sigmas | exact duty: error | sigma | own sigmas |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      title);
+  // The last four are near 1/5, 1/4 and 1/3 of the picture's line rate of 9063 Hz, and at 1/10 of the
+  // sensor's.
   for (double frequency : {1130., 1500., 2000., 2890., 1814., 2269., 3018., 2320.}) {
     for (double duty : {0.2, 0.35, 0.5, 0.65, 0.8}) {
       const Cells cells = measure(rig, frequency, duty, phases);

@@ -44,8 +44,8 @@ struct Results {
     auto at = [&](double share) {
       return n > 0 ? errors[std::min(n - 1, static_cast<size_t>(share * static_cast<double>(n)))] : NAN;
     };
-    std::printf("| %s | %d | %zu | %.3f | %.3f | %.3f | %.1f |\n", name, frames, n, sum / static_cast<double>(n),
-                at(0.95), at(1), worst);
+    std::printf("| %s | %d | %zu | %.3f | %.3f | %.3f | %.1f |\n", name, frames, n,
+                sum / static_cast<double>(n), at(0.95), at(1), worst);
   }
 };
 
@@ -89,8 +89,7 @@ Place placeWith(bool halved, const vpPlainRenderer &renderer, const std::vector<
     const Place place{reach * uniform(generator), reach * uniform(generator), M_PI * uniform(generator)};
     int whole = 0, half = 0, part = 0;
     for (const vpPlainRenderer::Disc &disc : discs) {
-      const double inside =
-          vpPlainRenderer::shareInside(renderer.spotOf(disc, place.x, place.y, place.yaw));
+      const double inside = vpPlainRenderer::shareInside(renderer.spotOf(disc, place.x, place.y, place.yaw));
       whole += inside == 1;
       half += inside > 0.4 && inside < 0.6;
       part += inside > 0 && inside < 1;

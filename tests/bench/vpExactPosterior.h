@@ -49,20 +49,20 @@ public:
     const bool open = m_profile.logExposureSigma > 0;
     static const int reach = 12; // boxes of an eighth of a line, to each side
     Place size{frequency * m_lineStep / 8 / m_half, frequency * m_lineStep / 8, frequency * m_lineStep / 8,
-               open ? 0.25 : 0};
+               open ? 0.35 : 0};
     std::vector<Box> boxes;
     const double log = std::log(exposure / m_profile.exposure);
-    const int exposures = open ? reach : 0;
+    const int exposures = open ? reach / 2 : 0; // to three standard deviations
     for (int e = -exposures; e <= exposures; ++e)
       for (int i = -reach; i <= reach; ++i)
         for (int j = -reach; j <= reach; ++j)
           for (int k = -reach; k <= reach; ++k) {
-            boxes.push_back({{frequency + i * size[0], phase + j * size[1], duty + k * size[2],
-                              log + e * size[3]}, 0});
+            boxes.push_back(
+                {{frequency + i * size[0], phase + j * size[1], duty + k * size[2], log + e * size[3]}, 0});
           }
     static const int levels = 6;
-    static const size_t enough = 100000; // boxes: more of them would tell no more
-    double margin = 600;                 // chi-square of half a box, about: a quarter at half the size
+    static const size_t enough = 20000; // boxes: more of them would tell no more
+    double margin = 600;                // chi-square of half a box, about: a quarter at half the size
     for (int level = 0; level < levels; ++level, margin /= 4) {
       evaluate(boxes, explained + margin);
       if (level + 1 == levels || boxes.size() > enough) {
@@ -159,7 +159,8 @@ private:
       yy += light * light;
     }
     const double sxx = xx - x * x / n, sxy = xy - x * y / n, syy = yy - y * y / n;
-    const double unlikely = m_profile.logExposureSigma > 0 ? std::pow(at[3] / m_profile.logExposureSigma, 2) : 0;
+    const double unlikely =
+        m_profile.logExposureSigma > 0 ? std::pow(at[3] / m_profile.logExposureSigma, 2) : 0;
     return (syy - (sxx > 1e-9 && sxy > 0 ? sxy * sxy / sxx : 0)) / variance + unlikely;
   }
 

@@ -17,10 +17,10 @@ using namespace VISP_NAMESPACE_NAME;
 #endif
 
 /*!
-  A second renderer, which shares no code with modules/vlp_simulation: a level camera of 2048x1536 pixels looks
-  up at discs, and every 2.56th pixel of its picture is kept (nearest neighbour). Of each pixel 8 x 8 points
-  are looked at, and a line's light is the integral over its exposure of a pulse train. Noise is of photons and
-  of the readout.
+  A second renderer, which shares no code with modules/vlp_simulation: a level camera of 2048x1536 pixels
+  looks up at discs, and every 2.56th pixel of its picture is kept (nearest neighbour). Of each pixel 8 x 8
+  points are looked at, and a line's light is the integral over its exposure of a pulse train. Noise is of
+  photons and of the readout.
 */
 struct vpPlainRenderer {
   struct Disc {
@@ -37,15 +37,16 @@ struct vpPlainRenderer {
   double lit = 150, ceiling = 8;                // grey levels
   double electrons = 40, readNoise = 1;         // electrons of a grey level; grey levels
 
-  //! A disc's middle and radius, px of the sensor. The camera's x axis points backwards, its y axis rightwards
-  //! turned about the vertical: as the rig's mount, turned by 180 degrees.
+  //! A disc's middle and radius, px of the sensor. The camera's x axis points backwards, its y axis
+  //! rightwards turned about the vertical: as the rig's mount, turned by 180 degrees.
   struct Spot {
     double u, v, radius;
   };
   Spot spotOf(const Disc &disc, double x, double y, double yaw) const
   {
     const double dx = disc.x - x, dy = disc.y - y, up = disc.z - cameraHeight;
-    const double ahead = std::cos(yaw) * dx + std::sin(yaw) * dy, left = std::cos(yaw) * dy - std::sin(yaw) * dx;
+    const double ahead = std::cos(yaw) * dx + std::sin(yaw) * dy,
+                 left = std::cos(yaw) * dy - std::sin(yaw) * dx;
     return {u0 - focal * ahead / up, v0 - focal * left / up, 0.5 * focal * diameter / up};
   }
 
@@ -87,8 +88,8 @@ struct vpPlainRenderer {
           }
         }
         const double noise = std::sqrt(grey / electrons + readNoise * readNoise);
-        picture[row][column] = static_cast<unsigned char>(
-            std::clamp(std::round(grey + noise * normal(generator)), 0.0, 255.0));
+        picture[row][column] =
+            static_cast<unsigned char>(std::clamp(std::round(grey + noise * normal(generator)), 0.0, 255.0));
       }
     }
   }

@@ -5,7 +5,6 @@
 #include <visp3/vlp_identification/vpStripeAnalyzer.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -58,6 +57,7 @@ public:
   std::vector<double> envelope;
   std::vector<vpStripeStarts::Edge> edges;
   std::optional<vpStripeStarts::Pulses> pulses;
+  bool byPulses = false; // what the edges say is all there is to try
 
   Start(const vpStripeProfile &profile, std::vector<double> litEnvelope, int order,
         const vpStripeAnalyzer &analyzer)
@@ -99,7 +99,6 @@ private:
 //! The best of several starts.
 void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 {
-  if (getenv("TRACE")) fprintf(stderr, "  fit %.1f Hz duty %.4f exp %.1f cost %.1f misfit %.4f hollow %d\n", fit.value(vpWaveformFit::frequency), fit.value(vpWaveformFit::duty), 1e6*fit.value(vpWaveformFit::exposure), fit.cost(), fit.misfit(), (int)fit.hollow());
   if ((!best || fit.cost() < best->cost()) && !fit.hollow()) {
     best.emplace(std::move(fit));
   }
@@ -124,10 +123,8 @@ std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency
 std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start)
 {
   std::optional<vpWaveformFit> best;
-  if (getenv("TRACE")) for (auto &c : start.candidates()) fprintf(stderr, " candidate %.1f gain %.1f\n", c.frequency, c.gain);
   if (start.pulses) {
     const vpStripeStarts::Pulses &pulses = *start.pulses;
-  if (getenv("TRACE")) fprintf(stderr, " pulses %.1f duty %.4f\n", pulses.frequency, pulses.duty);
     for (double exposure : exposuresOf(profile, pulses.frequency)) {
       vpWaveformFit fit(profile, start.settings, start.envelope);
       if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
@@ -138,6 +135,9 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start
         keepBetter(best, std::move(fit));
       }
     }
+  }
+  if (start.byPulses) {
+    return best;
   }
   for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
     std::optional<vpWaveformFit> found;
@@ -159,6 +159,23 @@ std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start
     }
   }
   return best;
+}
+
+/*!
+  The same lamp, were it as bright all over: the fewest unknowns. A pulse that lies between two lines looks
+  dim, and an envelope that may bend takes it for a dim part of the lamp. \param explained Whether the bent
+  one explains the stripes.
+*/
+Start evenlyLit(const vpStripeProfile &profile, const Start &bent, bool explained,
+                const vpStripeAnalyzer &analyzer)
+{
+  const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
+  Start even(profile, std::vector<double>(profile.light.size(), std::max(1.0, brightest)), 0, analyzer);
+  if (bent.pulses) {
+    even.pulses = bent.pulses;
+    even.byPulses = explained;
+  }
+  return even;
 }
 
 std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, Start &start)
@@ -344,11 +361,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   Start *start = &byAll;
   std::optional<Start> evenly, byPeriod;
   std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
-  if (order > 0 && !getenv("NOEVEN")) {
-    const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
-    evenly.emplace(profile, std::vector<double>(profile.light.size(), std::max(1.0, brightest)), 0, *this);
-    if (getenv("TRACE")) fprintf(stderr, "evenly\n");
-    evenly->pulses = byAll.pulses ? byAll.pulses : evenly->pulses;
+  if (order > 0) {
+    evenly = evenlyLit(profile, byAll, pwm && pwm->misfit() < allExplained, *this);
     std::optional<vpWaveformFit> other = fitPwm(profile, *evenly);
     if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);

@@ -167,8 +167,8 @@ void vpPulsePosterior::evaluate(const Range &range)
 }
 
 /*!
-  By how much chi-square may change from a place of the grid to half the way to the next: an edge that moves by
-  a share of the exposure changes the light of the line that sees it by as large a share.
+  By how much chi-square may change from a place of the grid to half the way to the next: an edge that moves
+  by a share of the exposure changes the light of the line that sees it by as large a share.
 */
 double vpPulsePosterior::changeBetween(const Range &range) const
 {
@@ -239,7 +239,6 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
     const auto cell = [](const Axis &axis) { return axis.count > 1 ? axis.step() : 1; };
     moments.logEvidence = std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) -
                           0.5 * least / inflation;
-    if (getenv("TRACE")) fprintf(stderr, "    round %d least %.1f between %.1f places f %d-%d/%d d %d-%d/%d l %d-%d/%d steps %.1f %.1f %.1f us\n", round, least, between, first[0], last[0], range.frequency.count, first[1], last[1], range.delay.count, first[2], last[2], range.length.count, 1e6*range.frequency.step(), 1e6*range.delay.step(), 1e6*range.length.step());
     const bool filled = 2 * (last[0] - first[0]) >= range.frequency.count &&
                         2 * (last[1] - first[1]) >= range.delay.count &&
                         (!freeDuty || 2 * (last[2] - first[2]) >= range.length.count);

@@ -123,7 +123,8 @@ private:
   Posterior sliced(const Posterior &bell);
   Posterior onGrid(const Posterior &bell);
   std::vector<double> likelyExposures(const Posterior &bell) const;
-  vpPulsePosterior::Moments momentsAt(double exposed) const;
+  vpPulsePosterior::Moments moments() const;
+  vpPulsePosterior::Moments momentsWith(double exposed) const;
   bool goOnFrom(const vpPulsePosterior::Moments &moments);
   Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);
   double slice(const Vector &axis, double width, double level, Vector &x, double &here, Uniform &uniform);

@@ -230,7 +230,7 @@ bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
 void vpWaveformFit::leaveGap()
 {
   if (gap() > 0) {
-    goOnFrom(momentsAt(m_x(exposure)));
+    goOnFrom(moments());
   }
 }
 
@@ -241,7 +241,7 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
   std::vector<Posterior> parts;
   std::vector<double> logs;
   for (const double exposed : likelyExposures(bell)) {
-    const vpPulsePosterior::Moments moments = momentsAt(exposed);
+    const vpPulsePosterior::Moments moments = momentsWith(exposed);
     if (parts.empty() && goOnFrom(moments)) {
       return onGrid(bell);
     }
@@ -283,8 +283,21 @@ std::vector<double> vpWaveformFit::likelyExposures(const Posterior &bell) const
   return exposures;
 }
 
-//! Frequency, phase and duty about m_x, were that the exposure.
-vpPulsePosterior::Moments vpWaveformFit::momentsAt(double exposed) const
+//! Frequency, phase and duty, were that the exposure: about what fits best with it, the envelope included.
+vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed) const
+{
+  if (exposed == m_x(exposure)) {
+    return moments();
+  }
+  vpWaveformFit other = *this;
+  other.m_freeExposure = false;
+  other.m_x(exposure) = exposed;
+  other.descend(20);
+  return other.moments();
+}
+
+//! Frequency, phase and duty about m_x with its exposure.
+vpPulsePosterior::Moments vpWaveformFit::moments() const
 {
   vpPulsePosterior::Lines lines;
   lines.time = m_time.cast<float>();
@@ -297,7 +310,7 @@ vpPulsePosterior::Moments vpWaveformFit::momentsAt(double exposed) const
   lines.dark = m_coefficient[0];
   lines.darkness = m_darkness;
   lines.step = m_line;
-  lines.exposure = exposed;
+  lines.exposure = m_x(exposure);
   return vpPulsePosterior::about(lines, m_x.head<3>(), m_freeDuty, m_inflation);
 }
 
