@@ -22,15 +22,17 @@ namespace
 //! What the frames of one kind gave.
 struct Results {
   std::vector<double> errors;         // mm, horizontal
-  double worst = 0;                   // own standard deviations, of x or y
+  double squares = 0, worst = 0;      // in own standard deviations, of x and y
   std::map<std::string, int> reasons; // of frames without a fix
 
   void add(const vpVlpFix &fix, double x, double y)
   {
     const double dx = fix.wMb[0][3] - x, dy = fix.wMb[1][3] - y;
     errors.push_back(1e3 * std::hypot(dx, dy));
-    worst = std::max({worst, std::abs(dx) / std::sqrt(fix.covariance(0, 0)),
-                      std::abs(dy) / std::sqrt(fix.covariance(1, 1))});
+    for (double own : {dx / std::sqrt(fix.covariance(0, 0)), dy / std::sqrt(fix.covariance(1, 1))}) {
+      squares += own * own;
+      worst = std::max(worst, std::abs(own));
+    }
   }
 
   void print(const char *name, int frames)
@@ -44,8 +46,9 @@ struct Results {
     auto at = [&](double share) {
       return n > 0 ? errors[std::min(n - 1, static_cast<size_t>(share * static_cast<double>(n)))] : NAN;
     };
-    std::printf("| %s | %d | %zu | %.3f | %.3f | %.3f | %.1f |\n", name, frames, n,
-                sum / static_cast<double>(n), at(0.95), at(1), worst);
+    std::printf("| %s | %d | %zu | %.3f | %.3f | %.3f | %.2f | %.1f |\n", name, frames, n,
+                sum / static_cast<double>(n), at(0.95), at(1),
+                std::sqrt(squares / (2 * static_cast<double>(n))), worst);
   }
 };
 
@@ -153,8 +156,9 @@ void run(const char *name, bool columns, int frames)
 int main(int argc, char **argv)
 {
   const int byRows = argc > 1 ? std::atoi(argv[1]) : 72, byColumns = argc > 2 ? std::atoi(argv[2]) : 36;
-  std::printf("| frames | of them | with a fix | mean error, mm | 95 %% | largest | largest, own sigmas |\n"
-              "|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| frames | of them | with a fix | mean error, mm | 95 %% | largest | in own sigmas, rms | largest |\n"
+      "|---|---|---|---|---|---|---|---|\n");
   run("readout by rows, two whole lamps or more", false, byRows);
   run("readout by columns, one lamp halved, one or two whole", true, byColumns);
   return 0;
