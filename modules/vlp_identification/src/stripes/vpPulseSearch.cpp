@@ -111,9 +111,7 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse()
       }
     }
     if (found) {
-      if (found->misfit() > allExplained) {
-        found->leaveGap();
-      }
+      found->leaveGap();
       keepBetter(best, std::move(*found));
     }
   }

@@ -210,8 +210,9 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
                  periods = frequency * std::abs(profile.time.back() - profile.time.front());
     byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, frequency),
                      std::clamp(static_cast<int>(periods) - 1, order, uneven), *this);
+    byPeriod->settings.envelopeUnknowns = static_cast<int>(periods);
     std::optional<vpWaveformFit> other = byPeriod->onePulse();
-    if (other && (!pwm || other->cost() < pwm->cost())) {
+    if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);
       start = &*byPeriod;
     }

@@ -6,6 +6,7 @@
 #define vpWaveformFit_h
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,7 +40,8 @@ public:
   using Matrix = Eigen::Matrix<double, parameters, parameters>;
 
   struct Settings {
-    int envelopeOrder = 0; // up to 4
+    int envelopeOrder = 0;    // up to 4
+    int envelopeUnknowns = 0; // that the given envelope was told with
     bool twoPulse = false;
     bool sharpened = false; // the camera makes lit lines beside dark ones brighter
     double modelError = 0.03;
@@ -98,8 +100,11 @@ public:
   bool hollow() const;
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
-  //! The same with what its linear parameters have to explain to be worth it (Schwarz 1978).
-  double criterion() const { return m_cost + m_linear * std::log(static_cast<double>(m_time.size())); }
+  //! The same with what offset and envelope have to explain to be worth their unknowns (Schwarz 1978).
+  double criterion() const
+  {
+    return m_cost + (m_linear + m_settings.envelopeUnknowns) * std::log(static_cast<double>(m_time.size()));
+  }
   //! Share of the stripes' power left unexplained, beyond what noise explains.
   double misfit() const;
 
