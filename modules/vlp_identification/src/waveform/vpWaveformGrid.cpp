@@ -86,7 +86,10 @@ std::vector<double> vpWaveformFit::likelyExposures(const Posterior &bell) const
   return exposures;
 }
 
-//! Frequency, phase and duty, were that the exposure: about what fits best with it, the envelope included.
+/*!
+  Frequency, phase and duty, were that the exposure: about what fits best with it, the envelope included. A
+  pulse that changes by more than the exposure does has been taken for it: lookAlikes() knows that one.
+*/
 vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed) const
 {
   if (exposed == m_x(exposure)) {
@@ -95,7 +98,13 @@ vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed) const
   vpWaveformFit other = *this;
   other.m_freeExposure = false;
   other.m_x(exposure) = exposed;
+  const Vector before = other.m_x;
   other.descend(20);
+  const double changed = std::abs(other.m_x(duty) - m_x(duty)) / m_x(frequency); // s
+  if (changed > std::abs(exposed - m_x(exposure)) + m_line) {
+    other.m_x = before;
+    other.settle();
+  }
   return other.moments();
 }
 
