@@ -30,7 +30,7 @@ struct Axis {
       return;
     }
     const double from = at(first) - step(), to = at(last) + step();
-    static const int most = 40;
+    static const int most = 20;
     if (2 * (last - first) > count && count < most) {
       count = 2 * count - 1;
     }

@@ -139,6 +139,12 @@ private:
   //! Whether few lines make a pattern that repeats over the whole profile: its edges pass from line to line
   //! all at once.
   bool repeats() const;
+  //! Whether gaps between exposures matter.
+  bool leavesGaps() const
+  {
+    static const double apart = 1.15; // exposures from line to line
+    return m_line >= apart * m_x(exposure);
+  }
   double gap() const { return std::max(0.0, m_line - m_profile->exposure); } // s, from exposure to exposure
   double sinusoidSigma() const;
   void prepareSums();

@@ -32,7 +32,7 @@ bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
 
 void vpWaveformFit::leaveGap()
 {
-  if (gap() > 0) {
+  if (leavesGaps()) {
     goOnFrom(moments());
   }
 }

@@ -75,10 +75,9 @@ vpWaveformFit::Posterior vpWaveformFit::posterior()
   const Posterior bell{m_x, (m_curvature / m_inflation + wide).inverse()};
   // Where exposures follow each other without gaps, what moves few edges from line to line is as bell-shaped
   // as the noise.
-  static const double gap = 1.15;   // exposures from line to line
   static const double sharp = 0.04; // lines: what one line alone leaves open of an edge in it
   const double open = (m_weight * m_given.square()).inverse().mean() * m_inflation;
-  if (m_line < gap * m_x(exposure) && open < sharp * sharp && !repeats()) {
+  if (!leavesGaps() && open < sharp * sharp && !repeats()) {
     return bell;
   }
   // A line that an exposure of nearly a period shows two pulses of is not one pulse's alone.
