@@ -88,6 +88,9 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse()
       vpWaveformFit fit(*m_profile, settings, m_envelope);
       if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
           fit.preferStatedExposure()) {
+        if (fit.misfit() > allExplained) {
+          fit.leaveGap();
+        }
         if (fit.misfit() < allExplained) {
           return fit;
         }
