@@ -196,7 +196,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   vpPulseSearch *start = &byAll;
   std::optional<vpPulseSearch> evenly, byPeriod;
   std::optional<vpWaveformFit> pwm = byAll.onePulse();
-  if (order > 0) {
+  const bool clipped = *std::max_element(profile.light.begin(), profile.light.end()) >= profile.white;
+  if (order > 0 && !clipped) { // beyond the end of the grey scale nothing tells an even lamp
     evenly = byAll.evenly(pwm && pwm->misfit() < vpPulseSearch::allExplained, *this);
     std::optional<vpWaveformFit> other = evenly->onePulse();
     if (other && (!pwm || other->criterion() < pwm->criterion())) {
