@@ -100,7 +100,9 @@ vpLampConsensus::vpLampConsensus(std::vector<const vpLamp *> lamps, const vpVlpR
 
 void vpLampConsensus::usable(std::vector<vpLampObservation> &observations, std::vector<size_t> &which)
 {
-  static const double placed = 0.1; // share of the diameter, standard deviation of the middle
+  // Two standard deviations of the middle lie within the lamp; how much such a lamp tells its covariance
+  // says.
+  static const double placed = 0.25; // share of the diameter
   which.clear();
   for (size_t i = 0; i < observations.size(); ++i) {
     vpLampObservation &lamp = observations[i];

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "vpPulseSearch.h"
 #include "vpStripeStarts.h"
 #include "waveform/vpDutyRidge.h"
 #include "waveform/vpStripeLimits.h"
@@ -20,8 +21,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-
-const double allExplained = 0.01; // misfit: no other start will do better
 
 const int even = 2, uneven = 4; // bends of an emitter's envelope
 
@@ -47,142 +46,6 @@ bool showsSharpening(const vpStripeProfile &profile, double frequency)
   const double span = std::abs(profile.time.back() - profile.time.front());
   const auto lines = static_cast<double>(profile.time.size());
   return profile.time.size() >= many && lines > narrow * span * frequency;
-}
-
-//! How bright the lamp is while it is lit, and what its stripes may then be.
-class Start
-{
-public:
-  vpWaveformFit::Settings settings;
-  std::vector<double> envelope;
-  std::vector<vpStripeStarts::Edge> edges;
-  std::optional<vpStripeStarts::Pulses> pulses;
-
-  Start(const vpStripeProfile &profile, std::vector<double> litEnvelope, int order,
-        const vpStripeAnalyzer &analyzer)
-      : envelope(std::move(litEnvelope)), m_profile(&profile)
-  {
-    settings.modelError = analyzer.modelError;
-    settings.exposureTolerance = analyzer.exposureTolerance;
-    settings.envelopeOrder = order;
-    edges = vpStripeStarts::edges(profile, envelope);
-    pulses = vpStripeStarts::pulses(edges);
-  }
-
-  //! Whether there are stripes at all: a sinusoid explains that much more than a level and a slope.
-  bool significant(double least)
-  {
-    const bool soon =
-        pulses &&
-        vpStripeStarts::sinusoidAt(*m_profile, envelope, settings.modelError, pulses->frequency).gain >=
-            least;
-    return soon || (!candidates().empty() && candidates().front().gain >= least);
-  }
-
-  //! The best first.
-  const std::vector<vpStripeStarts::Sinusoid> &candidates()
-  {
-    static const size_t most = 3;
-    if (!m_candidates) {
-      m_candidates = vpStripeStarts::periodogram(*m_profile, envelope, settings.modelError);
-      m_candidates->resize(std::min(m_candidates->size(), most));
-    }
-    return *m_candidates;
-  }
-
-private:
-  const vpStripeProfile *m_profile;
-  std::optional<std::vector<vpStripeStarts::Sinusoid>> m_candidates;
-};
-
-//! The best of several starts.
-void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
-{
-  if ((!best || fit.cost() < best->cost()) && !fit.hollow()) {
-    best.emplace(std::move(fit));
-  }
-}
-
-//! From where a fit may find the exposure, s: what is stated, and shorter and longer ones where that may be
-//! misstated.
-std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency)
-{
-  static const double longExposure = 0.3, sharp = 0.1, soft = 0.25; // periods
-  static const double uncertain = 0.2;                              // of the stated one's logarithm
-  std::vector<double> exposures{profile.exposure};
-  const double stated = profile.exposure * frequency;
-  if (stated > longExposure) { // from there no way leads to sharp stripes
-    exposures.push_back(sharp / frequency);
-  } else if (profile.logExposureSigma > uncertain && stated < sharp) {
-    exposures.push_back(soft / frequency);
-  }
-  return exposures;
-}
-
-std::optional<vpWaveformFit> fitPwm(const vpStripeProfile &profile, Start &start)
-{
-  std::optional<vpWaveformFit> best;
-  if (start.pulses) {
-    const vpStripeStarts::Pulses &pulses = *start.pulses;
-    for (double exposure : exposuresOf(profile, pulses.frequency)) {
-      vpWaveformFit fit(profile, start.settings, start.envelope);
-      if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
-          fit.preferStatedExposure()) {
-        if (fit.misfit() < allExplained) {
-          return fit;
-        }
-        keepBetter(best, std::move(fit));
-      }
-    }
-  }
-  for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
-    for (double exposure : exposuresOf(profile, candidate.frequency)) {
-      for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
-        vpWaveformFit fit(profile, start.settings, start.envelope);
-        // The first harmonic peaks in the middle of the pulse.
-        if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure) &&
-            fit.preferStatedExposure()) {
-          keepBetter(best, std::move(fit));
-        }
-      }
-    }
-  }
-  return best;
-}
-
-std::optional<vpWaveformFit> fitTwoPulse(const vpStripeProfile &profile, Start &start)
-{
-  vpWaveformFit::Settings settings = start.settings;
-  settings.twoPulse = true;
-  std::optional<vpWaveformFit> best;
-  if (const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::pairsOfPulses(start.edges)) {
-    vpWaveformFit fit(profile, settings, start.envelope);
-    if (fit.run(pulses->frequency, pulses->phase, pulses->duty, pulses->phaseDifference, 0, true) &&
-        fit.preferStatedExposure()) {
-      if (fit.misfit() < allExplained) {
-        return fit;
-      }
-      keepBetter(best, std::move(fit));
-    }
-  }
-  const double span = profile.time.back() - profile.time.front();
-  for (const vpStripeStarts::Sinusoid &candidate : start.candidates()) {
-    for (int multiple = 1; multiple <= 2; ++multiple) { // the second harmonic may be the stronger
-      const double f = candidate.frequency / multiple;
-      if (f * std::abs(span) < 0.9) {
-        continue;
-      }
-      for (double k : {0.15, 0.25, 0.35, 0.45}) {
-        for (double phase : {0.0, 0.25, 0.5, 0.75}) {
-          vpWaveformFit fit(profile, settings, start.envelope);
-          if (fit.run(f, phase, 0.3, k) && fit.preferStatedExposure()) {
-            keepBetter(best, std::move(fit));
-          }
-        }
-      }
-    }
-  }
-  return best;
 }
 
 //! \param middle s, of the profile, after the start of the frame.
@@ -327,7 +190,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
 
   const int order = envelopeOrderOf(profile, peaks);
   const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
-  Start byAll(profile, vpStripeStarts::envelope(profile, whole, order), order, *this);
+  vpPulseSearch byAll(profile, vpStripeStarts::envelope(profile, whole, order), order, *this);
   if (features.modulation < minModulation || profile.agreement < minAgreement ||
       !byAll.significant(minSignificance)) {
     return features;
@@ -335,24 +198,35 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   features.misfit = 1; // where no pulses explain anything
   const auto [earliest, latest] = std::minmax_element(profile.time.begin(), profile.time.end());
   const double middle = 0.5 * (*earliest + *latest);
-  Start *start = &byAll;
-  std::optional<Start> byPeriod;
-  std::optional<vpWaveformFit> pwm = fitPwm(profile, byAll);
-  if ((!pwm || pwm->misfit() > allExplained) && !byAll.candidates().empty()) {
+  vpPulseSearch *start = &byAll;
+  std::optional<vpPulseSearch> evenly, byPeriod;
+  std::optional<vpWaveformFit> pwm = byAll.onePulse();
+  const bool clipped = *std::max_element(profile.light.begin(), profile.light.end()) >= profile.white;
+  if (order > 0 && !clipped) { // beyond the end of the grey scale nothing tells an even lamp
+    evenly = byAll.evenly(pwm && pwm->misfit() < vpPulseSearch::allExplained, *this);
+    std::optional<vpWaveformFit> other = evenly->onePulse();
+    if (other && (!pwm || other->criterion() < pwm->criterion())) {
+      pwm = std::move(other);
+      start = &*evenly;
+    }
+  }
+  if ((!pwm || pwm->misfit() > vpPulseSearch::allExplained) && !byAll.candidates().empty()) {
     // An emitter of any pattern is as bright as the brightest that a period shows.
     const double frequency = byAll.candidates().front().frequency,
                  periods = frequency * std::abs(profile.time.back() - profile.time.front());
     byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, frequency),
                      std::clamp(static_cast<int>(periods) - 1, order, uneven), *this);
-    std::optional<vpWaveformFit> other = fitPwm(profile, *byPeriod);
-    if (other && (!pwm || other->cost() < pwm->cost())) {
+    byPeriod->settings.envelopeUnknowns = static_cast<int>(periods);
+    std::optional<vpWaveformFit> other = byPeriod->onePulse();
+    if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);
       start = &*byPeriod;
     }
   }
-  if (pwm && pwm->misfit() > allExplained && showsSharpening(profile, pwm->value(vpWaveformFit::frequency))) {
+  if (pwm && pwm->misfit() > vpPulseSearch::allExplained &&
+      showsSharpening(profile, pwm->value(vpWaveformFit::frequency))) {
     start->settings.sharpened = true;
-    std::optional<vpWaveformFit> other = fitPwm(profile, *start);
+    std::optional<vpWaveformFit> other = start->onePulse();
     static const double clearly = 0.5;
     if (other && other->misfit() < clearly * pwm->misfit()) {
       pwm = std::move(other);
@@ -371,20 +245,20 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   // A second pulse explains a little of what blur and tone curve do to one, too.
   static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;
   if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
-    std::optional<vpWaveformFit> two = fitTwoPulse(profile, byAll);
-    if (byPeriod && !(two && two->misfit() < allExplained)) {
-      std::optional<vpWaveformFit> other = fitTwoPulse(profile, *byPeriod);
+    std::optional<vpWaveformFit> two = byAll.twoPulses();
+    if (byPeriod && !(two && two->misfit() < vpPulseSearch::allExplained)) {
+      std::optional<vpWaveformFit> other = byPeriod->twoPulses();
       if (other && (!two || other->cost() < two->cost())) {
         two = std::move(other);
       }
     }
-    if (two && two->misfit() < maxMisfit &&
+    if (two && two->misfit() < maxMisfit && (!pwm || two->criterion() < pwm->criterion()) &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
       two->integrate();
       take(features, *two, true, middle);
     }
   }
-  widen(features, profile, start->pulses.has_value());
+  widen(features, profile, start->edgesAgree());
   static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
   if (!(features.misfit < beyondDoubt)) {
     const std::optional<vpWordSearch::Found> word =

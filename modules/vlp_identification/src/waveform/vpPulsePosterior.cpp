@@ -23,13 +23,17 @@ struct Axis {
 
   double step() const { return count > 1 ? 2 * reach / (count - 1) : 0; }
   double at(int i) const { return count > 1 ? middle - reach + i * step() : middle; }
-  //! The same over places \e first to \e last and a step beyond.
+  //! The same over places \e first to \e last and a step beyond; where these are most of it, more finely.
   void narrow(int first, int last)
   {
     if (count == 1) {
       return;
     }
     const double from = at(first) - step(), to = at(last) + step();
+    static const int most = 20;
+    if (2 * (last - first) > count && count < most) {
+      count = 2 * count - 1;
+    }
     middle = 0.5 * (from + to);
     reach = 0.5 * (to - from);
   }
@@ -41,6 +45,12 @@ struct Axis {
 struct vpPulsePosterior::Range {
   Axis frequency, delay, length;
   double half = 0; // s, of the profile
+};
+
+//! What of a grid is likely, and moments over it: of frequency, delay and length as the grid has them.
+struct vpPulsePosterior::Places {
+  int first[3] = {1 << 20, 1 << 20, 1 << 20}, last[3] = {-1, -1, -1}; // frequency, delay, length
+  Moments moments;
 };
 
 //! One pulse, tabled by its delay.
@@ -162,6 +172,61 @@ void vpPulsePosterior::evaluate(const Range &range)
   }
 }
 
+/*!
+  By how much chi-square may change from a place of the grid to half the way to the next: an edge that moves
+  by a share of the exposure changes the light of the line that sees it by as large a share.
+*/
+double vpPulsePosterior::changeBetween(const Range &range) const
+{
+  // Along the profile a frequency's move is a third in the mean square; of a length each edge moves by half.
+  const double moved = (std::pow(range.frequency.step(), 2) / 3 + std::pow(range.delay.step(), 2) +
+                        std::pow(0.5 * range.length.step(), 2)) /
+                       4;
+  const double edges = 2 * static_cast<double>(m_pulses.size()), seen = m_lines.exposure / m_lines.step,
+               weight = (m_lines.weight * m_lines.lit.square()).mean();
+  return edges * seen * weight * moved / (m_lines.exposure * m_lines.exposure);
+}
+
+//! The places of the grid whose chi-square is within \e reach of the least.
+vpPulsePosterior::Places vpPulsePosterior::likely(const Range &range, double reach, double inflation) const
+{
+  Places places;
+  const float least = *std::min_element(m_chiSquares.begin(), m_chiSquares.end()),
+              limit = least + static_cast<float>(reach);
+  const Eigen::Vector3d about(range.frequency.middle, range.delay.middle, range.length.middle);
+  double sum = 0;
+  Eigen::Vector3d ofFirst = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d ofSecond = Eigen::Matrix3d::Zero();
+  size_t place = 0;
+  for (int k = 0; k < range.length.count; ++k)
+    for (int i = 0; i < range.frequency.count; ++i)
+      for (int j = 0; j < range.delay.count; ++j, ++place) {
+        if (!(m_chiSquares[place] < limit)) {
+          continue;
+        }
+        const int at[3] = {i, j, k};
+        for (int axis = 0; axis < 3; ++axis) {
+          places.first[axis] = std::min(places.first[axis], at[axis]);
+          places.last[axis] = std::max(places.last[axis], at[axis]);
+        }
+        const double weight = std::exp(-0.5 * (m_chiSquares[place] - least) / inflation);
+        const Eigen::Vector3d x =
+            Eigen::Vector3d(range.frequency.at(i), range.delay.at(j), range.length.at(k)) - about;
+        sum += weight;
+        ofFirst += weight * x;
+        ofSecond += weight * x * x.transpose();
+      }
+  ofFirst /= sum;
+  const auto cell = [](const Axis &axis) { return axis.count > 1 ? axis.step() : 1; };
+  places.moments.mean = about + ofFirst;
+  places.moments.covariance = ofSecond / sum - ofFirst * ofFirst.transpose();
+  places.moments.chiSquare = least;
+  places.moments.logEvidence =
+      std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) -
+      0.5 * least / inflation;
+  return places;
+}
+
 vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eigen::Vector3d &start,
                                                   bool freeDuty, double inflation)
 {
@@ -183,45 +248,16 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
       range.length.reach = std::max(0.5 * (longest - shortest), 1e-3 * lines.step);
     }
     posterior.evaluate(range);
-    const std::vector<float> &chiSquares = posterior.m_chiSquares;
-    const float least = *std::min_element(chiSquares.begin(), chiSquares.end());
-    // Places between those of a coarse grid may be better: as many as half the way between two lets hope for.
-    static const double explained = 30;
-    const auto limit = static_cast<float>(least + explained * inflation);
-    int first[3] = {1 << 20, 1 << 20, 1 << 20}, last[3] = {-1, -1, -1};
-    double sum = 0;
-    Eigen::Vector3d ofFirst = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d ofSecond = Eigen::Matrix3d::Zero();
-    size_t place = 0;
-    for (int k = 0; k < range.length.count; ++k)
-      for (int i = 0; i < range.frequency.count; ++i)
-        for (int j = 0; j < range.delay.count; ++j, ++place) {
-          if (!(chiSquares[place] < limit)) {
-            continue;
-          }
-          const int at[3] = {i, j, k};
-          for (int axis = 0; axis < 3; ++axis) {
-            first[axis] = std::min(first[axis], at[axis]);
-            last[axis] = std::max(last[axis], at[axis]);
-          }
-          const double weight = std::exp(-0.5 * (chiSquares[place] - least) / inflation);
-          const Eigen::Vector3d x(range.frequency.at(i), range.delay.at(j),
-                                  range.length.at(k) - dutyStart * period);
-          sum += weight;
-          ofFirst += weight * x;
-          ofSecond += weight * x * x.transpose();
-        }
-    ofFirst /= sum;
-    moments.mean = ofFirst;
-    moments.covariance = ofSecond / sum - ofFirst * ofFirst.transpose();
-    moments.chiSquare = least;
-    const auto cell = [](const Axis &axis) { return axis.count > 1 ? axis.step() : 1; };
-    moments.logEvidence = std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) -
-                          0.5 * least / inflation;
+    // Places between those of a coarse grid may be better, by as much as edges move on the way to them.
+    static const double explained = 25;
+    const double between = posterior.changeBetween(range);
+    const Places places = posterior.likely(range, explained * inflation + between, inflation);
+    moments = places.moments;
+    const int *first = places.first, *last = places.last;
     const bool filled = 2 * (last[0] - first[0]) >= range.frequency.count &&
                         2 * (last[1] - first[1]) >= range.delay.count &&
                         (!freeDuty || 2 * (last[2] - first[2]) >= range.length.count);
-    if (filled) {
+    if (filled && between < explained * inflation) {
       break;
     }
     range.frequency.narrow(first[0], last[0]);
@@ -236,7 +272,7 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
   by(1, 1) = -f;
   by(2, 2) = sign * f;
   by(1, 2) = 0.5 * sign * f; // the pulse's middle stays
-  moments.mean = start + by * moments.mean;
+  moments.mean = start + by * (moments.mean - Eigen::Vector3d(0, 0, dutyStart * period));
   moments.covariance = by * moments.covariance * by.transpose();
   return moments;
 }

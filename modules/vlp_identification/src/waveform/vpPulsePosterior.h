@@ -52,9 +52,12 @@ public:
 
 private:
   struct Range;
+  struct Places;
   struct Pulse;
   vpPulsePosterior(const Lines &lines, const Eigen::Vector3d &start);
   void evaluate(const Range &range);
+  double changeBetween(const Range &range) const;
+  Places likely(const Range &range, double reach, double inflation) const;
   void tabulate(const Range &range, double length);
   void addPulses(const Range &range, double ofFrequency);
 

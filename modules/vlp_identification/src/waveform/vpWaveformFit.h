@@ -6,6 +6,7 @@
 #define vpWaveformFit_h
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,7 +40,8 @@ public:
   using Matrix = Eigen::Matrix<double, parameters, parameters>;
 
   struct Settings {
-    int envelopeOrder = 0; // up to 4
+    int envelopeOrder = 0;    // up to 4
+    int envelopeUnknowns = 0; // that the given envelope was told with
     bool twoPulse = false;
     bool sharpened = false; // the camera makes lit lines beside dark ones brighter
     double modelError = 0.03;
@@ -64,6 +66,10 @@ public:
     that lamps have and to a lamp that goes dark.
   */
   bool preferStatedExposure();
+
+  //! Where the lines leave gaps, an edge that no line sees leads no descent out of its gap: goes on from the
+  //! likeliest places about the minimum.
+  void leaveGap();
 
   //! Turns values and standard deviations into those of the posterior about the minimum that run() found.
   void integrate();
@@ -94,6 +100,11 @@ public:
   bool hollow() const;
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
+  //! The same with what offset and envelope have to explain to be worth their unknowns (Schwarz 1978).
+  double criterion() const
+  {
+    return m_cost + (m_linear + m_settings.envelopeUnknowns) * std::log(static_cast<double>(m_time.size()));
+  }
   //! Share of the stripes' power left unexplained, beyond what noise explains.
   double misfit() const;
 
@@ -117,7 +128,9 @@ private:
   Posterior sliced(const Posterior &bell);
   Posterior onGrid(const Posterior &bell);
   std::vector<double> likelyExposures(const Posterior &bell) const;
-  vpPulsePosterior::Moments momentsAt(double exposed) const;
+  vpPulsePosterior::Moments moments() const;
+  vpPulsePosterior::Moments momentsWith(double exposed) const;
+  bool goOnFrom(const vpPulsePosterior::Moments &moments);
   Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);
   double slice(const Vector &axis, double width, double level, Vector &x, double &here, Uniform &uniform);
   void judgeResiduals();
@@ -126,6 +139,12 @@ private:
   //! Whether few lines make a pattern that repeats over the whole profile: its edges pass from line to line
   //! all at once.
   bool repeats() const;
+  //! Whether gaps between exposures matter.
+  bool leavesGaps() const
+  {
+    static const double apart = 1.15; // exposures from line to line
+    return m_line >= apart * m_x(exposure);
+  }
   double gap() const { return std::max(0.0, m_line - m_profile->exposure); } // s, from exposure to exposure
   double sinusoidSigma() const;
   void prepareSums();

@@ -16,41 +16,9 @@
 
 #include "vpDutyRidge.h"
 #include "vpStripeLimits.h"
+#include "vpWaveformMoments.h"
 
 BEGIN_VISP_NAMESPACE
-
-//! Mean and covariance of weighted samples.
-class vpWaveformFit::Moments
-{
-public:
-  //! \param about Some place near them.
-  explicit Moments(const Vector &about) : m_about(about) {}
-
-  void add(const Vector &x, double weight, double cost)
-  {
-    if (cost < m_leastCost) {
-      m_leastCost = cost;
-      m_likeliest = x;
-    }
-    const Vector apart = x - m_about;
-    m_sum += weight;
-    m_first += weight * apart;
-    m_second += weight * apart * apart.transpose();
-  }
-  Vector mean() const { return m_about + m_first / m_sum; }
-  Matrix covariance() const
-  {
-    const Vector first = m_first / m_sum;
-    return m_second / m_sum - first * first.transpose();
-  }
-  const Vector &likeliest() const { return m_likeliest; }
-  double leastCost() const { return m_leastCost; }
-
-private:
-  Vector m_about, m_first = Vector::Zero(), m_likeliest = Vector::Zero();
-  Matrix m_second = Matrix::Zero();
-  double m_sum = 0, m_leastCost = std::numeric_limits<double>::infinity();
-};
 
 //! Numbers between 0 and 1, the same each time.
 class vpWaveformFit::Uniform
@@ -107,10 +75,9 @@ vpWaveformFit::Posterior vpWaveformFit::posterior()
   const Posterior bell{m_x, (m_curvature / m_inflation + wide).inverse()};
   // Where exposures follow each other without gaps, what moves few edges from line to line is as bell-shaped
   // as the noise.
-  static const double gap = 1.15;   // exposures from line to line
   static const double sharp = 0.04; // lines: what one line alone leaves open of an edge in it
   const double open = (m_weight * m_given.square()).inverse().mean() * m_inflation;
-  if (m_line < gap * m_x(exposure) && open < sharp * sharp && !repeats()) {
+  if (!leavesGaps() && open < sharp * sharp && !repeats()) {
     return bell;
   }
   // A line that an exposure of nearly a period shows two pulses of is not one pulse's alone.
@@ -207,87 +174,10 @@ double vpWaveformFit::frequencyNoise() const
   return gap() > 0 || repeats() ? std::min(m_sigma(frequency), sinusoidSigma()) : m_sigma(frequency);
 }
 
-//! Mean and covariance of exp(-cost / (2 inflation)) of one pulse a period, by all places on a grid, for each
-//! of the exposures that there may be.
-vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
-{
-  std::vector<Posterior> parts;
-  std::vector<double> logs;
-  for (const double exposed : likelyExposures(bell)) {
-    const vpPulsePosterior::Moments moments = momentsAt(exposed);
-    static const double deeper = 0.8;
-    if (parts.empty() &&
-        moments.chiSquare < deeper * m_chiSquare) { // another minimum than the one that was known
-      const Vector before = m_x;
-      const double least = m_cost;
-      m_x.head<3>() = moments.mean;
-      descend(10);
-      if (m_cost < deeper * least) {
-        judgeResiduals();
-        return onGrid(bell);
-      }
-      m_x = before;
-      settle();
-    }
-    Posterior part = bell;
-    part.mean.head<3>() = moments.mean;
-    part.mean(exposure) = exposed;
-    part.covariance.topLeftCorner<3, 3>() = moments.covariance;
-    parts.push_back(part);
-    logs.push_back(moments.logEvidence - 0.5 * prior(exposure, part.mean).chiSquare);
-  }
-  const double most = *std::max_element(logs.begin(), logs.end());
-  Moments all(m_x);
-  Matrix within = Matrix::Zero();
-  double sum = 0;
-  for (size_t k = 0; k < parts.size(); ++k) {
-    const double weight = std::exp(logs[k] - most);
-    all.add(parts[k].mean, weight, 0);
-    within += weight * parts[k].covariance;
-    sum += weight;
-  }
-  return {all.mean(), all.covariance() + within / sum};
-}
-
-//! The fitted one, the stated one, and what the fit leaves open, s.
-std::vector<double> vpWaveformFit::likelyExposures(const Posterior &bell) const
-{
-  static const double different = 0.05, uncertain = 0.1, node = 1.22; // share; share; standard deviations
-  const double fitted = m_x(exposure), stated = m_profile->exposure;
-  const double sigma =
-      std::min(std::sqrt(std::max(0.0, bell.covariance(exposure, exposure))) / fitted, m_logExposureSigma);
-  std::vector<double> exposures{fitted};
-  if (std::abs(std::log(fitted / stated)) > different) {
-    exposures.push_back(stated);
-  }
-  if (sigma > uncertain) {
-    exposures.push_back(fitted * std::exp(node * sigma));
-    exposures.push_back(fitted * std::exp(-node * sigma));
-  }
-  return exposures;
-}
-
-//! Frequency, phase and duty about m_x, were that the exposure.
-vpPulsePosterior::Moments vpWaveformFit::momentsAt(double exposed) const
-{
-  vpPulsePosterior::Lines lines;
-  lines.time = m_time.cast<float>();
-  lines.light = m_light.cast<float>();
-  if (m_settings.sharpened) {
-    lines.light -= (m_coefficient[static_cast<size_t>(m_linear) - 1] * m_overshoot).cast<float>();
-  }
-  lines.weight = m_weight.cast<float>();
-  lines.lit = envelope().cast<float>();
-  lines.dark = m_coefficient[0];
-  lines.darkness = m_darkness;
-  lines.step = m_line;
-  lines.exposure = exposed;
-  return vpPulsePosterior::about(lines, m_x.head<3>(), m_freeDuty, m_inflation);
-}
-
 /*!
-  The same by slice sampling (Neal 2003) from the minimum, which needs no shape to be right: first hot, which
-  finds a deeper minimum where walls hide it and tells the axes of the shape; then as it is.
+  Mean and covariance of exp(-cost / (2 inflation)) by slice sampling (Neal 2003) from the minimum, which
+  needs no shape to be right: first hot, which finds a deeper minimum where walls hide it and tells the axes
+  of the shape; then as it is.
 */
 vpWaveformFit::Posterior vpWaveformFit::sliced(const Posterior &bell)
 {

@@ -1,0 +1,159 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpPulseSearch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! The best of several starts.
+void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
+{
+  if ((!best || fit.cost() < best->cost()) && !fit.hollow()) {
+    best.emplace(std::move(fit));
+  }
+}
+
+//! From where a fit may find the exposure, s: what is stated, and shorter and longer ones where that may be
+//! misstated.
+std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency)
+{
+  static const double longExposure = 0.3, sharp = 0.1, soft = 0.25; // periods
+  static const double uncertain = 0.2;                              // of the stated one's logarithm
+  std::vector<double> exposures{profile.exposure};
+  const double stated = profile.exposure * frequency;
+  if (stated > longExposure) { // from there no way leads to sharp stripes
+    exposures.push_back(sharp / frequency);
+  } else if (profile.logExposureSigma > uncertain && stated < sharp) {
+    exposures.push_back(soft / frequency);
+  }
+  return exposures;
+}
+} // namespace
+
+vpPulseSearch::vpPulseSearch(const vpStripeProfile &profile, std::vector<double> envelope, int order,
+                             const vpStripeAnalyzer &analyzer)
+    : m_profile(&profile), m_envelope(std::move(envelope))
+{
+  settings.modelError = analyzer.modelError;
+  settings.exposureTolerance = analyzer.exposureTolerance;
+  settings.envelopeOrder = order;
+  m_edges = vpStripeStarts::edges(profile, m_envelope);
+  m_pulses = vpStripeStarts::pulses(m_edges);
+}
+
+vpPulseSearch vpPulseSearch::evenly(bool explained, const vpStripeAnalyzer &analyzer) const
+{
+  const std::vector<double> &light = m_profile->light;
+  const double brightest = *std::max_element(light.begin(), light.end());
+  vpPulseSearch even(*m_profile, std::vector<double>(light.size(), std::max(1.0, brightest)), 0, analyzer);
+  if (m_pulses) {
+    even.m_pulses = m_pulses;
+    even.m_byPulses = explained;
+  }
+  return even;
+}
+
+bool vpPulseSearch::significant(double least)
+{
+  const bool soon =
+      m_pulses &&
+      vpStripeStarts::sinusoidAt(*m_profile, m_envelope, settings.modelError, m_pulses->frequency).gain >=
+          least;
+  return soon || (!candidates().empty() && candidates().front().gain >= least);
+}
+
+const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
+{
+  static const size_t most = 3;
+  if (!m_candidates) {
+    m_candidates = vpStripeStarts::periodogram(*m_profile, m_envelope, settings.modelError);
+    m_candidates->resize(std::min(m_candidates->size(), most));
+  }
+  return *m_candidates;
+}
+
+std::optional<vpWaveformFit> vpPulseSearch::onePulse()
+{
+  std::optional<vpWaveformFit> best;
+  if (m_pulses) {
+    const vpStripeStarts::Pulses &pulses = *m_pulses;
+    for (double exposure : exposuresOf(*m_profile, pulses.frequency)) {
+      vpWaveformFit fit(*m_profile, settings, m_envelope);
+      if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
+          fit.preferStatedExposure()) {
+        if (fit.misfit() > allExplained) {
+          fit.leaveGap();
+        }
+        if (fit.misfit() < allExplained) {
+          return fit;
+        }
+        keepBetter(best, std::move(fit));
+      }
+    }
+  }
+  if (m_byPulses) {
+    return best;
+  }
+  for (const vpStripeStarts::Sinusoid &candidate : candidates()) {
+    std::optional<vpWaveformFit> found;
+    for (double exposure : exposuresOf(*m_profile, candidate.frequency)) {
+      for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
+        vpWaveformFit fit(*m_profile, settings, m_envelope);
+        // The first harmonic peaks in the middle of the pulse.
+        if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure) &&
+            fit.preferStatedExposure()) {
+          keepBetter(found, std::move(fit));
+        }
+      }
+    }
+    if (found) {
+      found->leaveGap();
+      keepBetter(best, std::move(*found));
+    }
+  }
+  return best;
+}
+
+std::optional<vpWaveformFit> vpPulseSearch::twoPulses()
+{
+  vpWaveformFit::Settings both = settings;
+  both.twoPulse = true;
+  std::optional<vpWaveformFit> best;
+  if (const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::pairsOfPulses(m_edges)) {
+    vpWaveformFit fit(*m_profile, both, m_envelope);
+    if (fit.run(pulses->frequency, pulses->phase, pulses->duty, pulses->phaseDifference, 0, true) &&
+        fit.preferStatedExposure()) {
+      if (fit.misfit() < allExplained) {
+        return fit;
+      }
+      keepBetter(best, std::move(fit));
+    }
+  }
+  const double span = m_profile->time.back() - m_profile->time.front();
+  for (const vpStripeStarts::Sinusoid &candidate : candidates()) {
+    for (int multiple = 1; multiple <= 2; ++multiple) { // the second harmonic may be the stronger
+      const double f = candidate.frequency / multiple;
+      if (f * std::abs(span) < 0.9) {
+        continue;
+      }
+      for (double k : {0.15, 0.25, 0.35, 0.45}) {
+        for (double phase : {0.0, 0.25, 0.5, 0.75}) {
+          vpWaveformFit fit(*m_profile, both, m_envelope);
+          if (fit.run(f, phase, 0.3, k) && fit.preferStatedExposure()) {
+            keepBetter(best, std::move(fit));
+          }
+        }
+      }
+    }
+  }
+  return best;
+}
+
+END_VISP_NAMESPACE

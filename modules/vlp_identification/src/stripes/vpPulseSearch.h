@@ -1,0 +1,56 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpPulseSearch_h
+#define vpPulseSearch_h
+
+#include <optional>
+#include <vector>
+
+#include "vpStripeStarts.h"
+#include "waveform/vpWaveformFit.h"
+
+BEGIN_VISP_NAMESPACE
+
+//! The pulses that explain the stripes best, were the lamp that bright while it is lit.
+class vpPulseSearch
+{
+public:
+  static constexpr double allExplained = 0.01; // misfit: no other start will do better
+
+  vpWaveformFit::Settings settings;
+
+  //! \param envelope Of each line, grey levels, about. \param order Bends that it may have beyond that.
+  vpPulseSearch(const vpStripeProfile &profile, std::vector<double> envelope, int order,
+                const vpStripeAnalyzer &analyzer);
+
+  /*!
+    The same lamp, were it as bright all over: the fewest unknowns. A pulse that lies between two lines looks
+    dim, and an envelope that may bend takes it for a dim part of the lamp. \param explained Whether the bent
+    one explains the stripes.
+  */
+  vpPulseSearch evenly(bool explained, const vpStripeAnalyzer &analyzer) const;
+
+  //! Whether there are stripes at all: a sinusoid explains that much more than a level and a slope.
+  bool significant(double least);
+  //! The likeliest sinusoids, the best first.
+  const std::vector<vpStripeStarts::Sinusoid> &candidates();
+  //! Whether the edges of the stripes are those of one pulse a period.
+  bool edgesAgree() const { return m_pulses.has_value(); }
+
+  std::optional<vpWaveformFit> onePulse();
+  std::optional<vpWaveformFit> twoPulses();
+
+private:
+  const vpStripeProfile *m_profile;
+  std::vector<double> m_envelope;
+  std::vector<vpStripeStarts::Edge> m_edges;
+  std::optional<vpStripeStarts::Pulses> m_pulses;
+  bool m_byPulses = false; // what the edges say is all there is to try
+  std::optional<std::vector<vpStripeStarts::Sinusoid>> m_candidates;
+};
+
+END_VISP_NAMESPACE
+
+#endif

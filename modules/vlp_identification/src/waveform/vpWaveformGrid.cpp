@@ -1,0 +1,129 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include <algorithm>
+#include <cmath>
+
+#include "vpWaveformFit.h"
+#include "vpWaveformMoments.h"
+
+BEGIN_VISP_NAMESPACE
+
+//! Descends from there where that is far below the minimum at m_x. \return Whether it is another minimum.
+bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
+{
+  static const double deeper = 0.8;
+  if (!(moments.chiSquare < deeper * m_chiSquare)) {
+    return false;
+  }
+  const Vector before = m_x;
+  const double least = m_cost;
+  m_x.head<3>() = moments.mean;
+  descend(10);
+  if (m_cost < deeper * least) {
+    judgeResiduals();
+    return true;
+  }
+  m_x = before;
+  settle();
+  return false;
+}
+
+void vpWaveformFit::leaveGap()
+{
+  if (leavesGaps()) {
+    goOnFrom(moments());
+  }
+}
+
+//! Mean and covariance of exp(-cost / (2 inflation)) of one pulse a period, by all places on a grid, for each
+//! of the exposures that there may be.
+vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
+{
+  std::vector<Posterior> parts;
+  std::vector<double> logs;
+  for (const double exposed : likelyExposures(bell)) {
+    const vpPulsePosterior::Moments moments = momentsWith(exposed);
+    if (parts.empty() && goOnFrom(moments)) {
+      return onGrid(bell);
+    }
+    Posterior part = bell;
+    part.mean.head<3>() = moments.mean;
+    part.mean(exposure) = exposed;
+    part.covariance.topLeftCorner<3, 3>() = moments.covariance;
+    parts.push_back(part);
+    logs.push_back(moments.logEvidence - 0.5 * prior(exposure, part.mean).chiSquare);
+  }
+  const double most = *std::max_element(logs.begin(), logs.end());
+  Moments all(m_x);
+  Matrix within = Matrix::Zero();
+  double sum = 0;
+  for (size_t k = 0; k < parts.size(); ++k) {
+    const double weight = std::exp(logs[k] - most);
+    all.add(parts[k].mean, weight, 0);
+    within += weight * parts[k].covariance;
+    sum += weight;
+  }
+  return {all.mean(), all.covariance() + within / sum};
+}
+
+//! The fitted one, the stated one, and what the fit leaves open, s.
+std::vector<double> vpWaveformFit::likelyExposures(const Posterior &bell) const
+{
+  static const double different = 0.05, uncertain = 0.1, node = 1.22; // share; share; standard deviations
+  const double fitted = m_x(exposure), stated = m_profile->exposure;
+  const double sigma =
+      std::min(std::sqrt(std::max(0.0, bell.covariance(exposure, exposure))) / fitted, m_logExposureSigma);
+  std::vector<double> exposures{fitted};
+  if (std::abs(std::log(fitted / stated)) > different) {
+    exposures.push_back(stated);
+  }
+  if (sigma > uncertain) {
+    exposures.push_back(fitted * std::exp(node * sigma));
+    exposures.push_back(fitted * std::exp(-node * sigma));
+  }
+  return exposures;
+}
+
+/*!
+  Frequency, phase and duty, were that the exposure: about what fits best with it, the envelope included. A
+  pulse that changes by more than the exposure does has been taken for it: lookAlikes() knows that one.
+*/
+vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed) const
+{
+  if (exposed == m_x(exposure)) {
+    return moments();
+  }
+  vpWaveformFit other = *this;
+  other.m_freeExposure = false;
+  other.m_x(exposure) = exposed;
+  const Vector before = other.m_x;
+  other.descend(20);
+  const double changed = std::abs(other.m_x(duty) - m_x(duty)) / m_x(frequency); // s
+  if (changed > std::abs(exposed - m_x(exposure)) + m_line) {
+    other.m_x = before;
+    other.settle();
+  }
+  return other.moments();
+}
+
+//! Frequency, phase and duty about m_x with its exposure.
+vpPulsePosterior::Moments vpWaveformFit::moments() const
+{
+  vpPulsePosterior::Lines lines;
+  lines.time = m_time.cast<float>();
+  lines.light = m_light.cast<float>();
+  if (m_settings.sharpened) {
+    lines.light -= (m_coefficient[static_cast<size_t>(m_linear) - 1] * m_overshoot).cast<float>();
+  }
+  lines.weight = m_weight.cast<float>();
+  lines.lit = envelope().cast<float>();
+  lines.dark = m_coefficient[0];
+  lines.darkness = m_darkness;
+  lines.step = m_line;
+  lines.exposure = m_x(exposure);
+  return vpPulsePosterior::about(lines, m_x.head<3>(), m_freeDuty, m_inflation);
+}
+
+END_VISP_NAMESPACE
