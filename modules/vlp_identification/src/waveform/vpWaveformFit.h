@@ -128,7 +128,6 @@ private:
   Posterior sliced(const Posterior &bell);
   Posterior onGrid(const Posterior &bell);
   std::vector<double> likelyExposures(const Posterior &bell) const;
-  vpPulsePosterior::Moments moments() const;
   vpPulsePosterior::Moments momentsWith(double exposed) const;
   bool goOnFrom(const vpPulsePosterior::Moments &moments);
   Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);

@@ -33,7 +33,7 @@ bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
 void vpWaveformFit::leaveGap()
 {
   if (leavesGaps()) {
-    goOnFrom(moments());
+    goOnFrom(momentsWith(m_x(exposure)));
   }
 }
 
@@ -86,30 +86,8 @@ std::vector<double> vpWaveformFit::likelyExposures(const Posterior &bell) const
   return exposures;
 }
 
-/*!
-  Frequency, phase and duty, were that the exposure: about what fits best with it, the envelope included. A
-  pulse that changes by more than the exposure does has been taken for it: lookAlikes() knows that one.
-*/
+//! Frequency, phase and duty about m_x, were that the exposure, s.
 vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed) const
-{
-  if (exposed == m_x(exposure)) {
-    return moments();
-  }
-  vpWaveformFit other = *this;
-  other.m_freeExposure = false;
-  other.m_x(exposure) = exposed;
-  const Vector before = other.m_x;
-  other.descend(20);
-  const double changed = std::abs(other.m_x(duty) - m_x(duty)) / m_x(frequency); // s
-  if (changed > std::abs(exposed - m_x(exposure)) + m_line) {
-    other.m_x = before;
-    other.settle();
-  }
-  return other.moments();
-}
-
-//! Frequency, phase and duty about m_x with its exposure.
-vpPulsePosterior::Moments vpWaveformFit::moments() const
 {
   vpPulsePosterior::Lines lines;
   lines.time = m_time.cast<float>();
@@ -122,7 +100,7 @@ vpPulsePosterior::Moments vpWaveformFit::moments() const
   lines.dark = m_coefficient[0];
   lines.darkness = m_darkness;
   lines.step = m_line;
-  lines.exposure = m_x(exposure);
+  lines.exposure = exposed;
   return vpPulsePosterior::about(lines, m_x.head<3>(), m_freeDuty, m_inflation);
 }
 
