@@ -199,7 +199,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   const auto [earliest, latest] = std::minmax_element(profile.time.begin(), profile.time.end());
   const double middle = 0.5 * (*earliest + *latest);
   vpPulseSearch *start = &byAll;
-  std::optional<vpPulseSearch> evenly, byPeriod;
+  std::optional<vpPulseSearch> evenly, byPeriod, byStripes;
   std::optional<vpWaveformFit> pwm = byAll.onePulse();
   const bool clipped = *std::max_element(profile.light.begin(), profile.light.end()) >= profile.white;
   if (order > 0 && !clipped) { // beyond the end of the grey scale nothing tells an even lamp
@@ -221,6 +221,15 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);
       start = &*byPeriod;
+    }
+  }
+  if ((!pwm || pwm->misfit() > vpPulseSearch::allExplained) && peaks.size() > 1) {
+    byStripes.emplace(profile, vpStripeStarts::envelopeOfStripes(profile, peaks), 0, *this);
+    byStripes->settings.envelopeUnknowns = 2 * static_cast<int>(peaks.size());
+    std::optional<vpWaveformFit> other = byStripes->onePulse();
+    if (other && (!pwm || other->criterion() < pwm->criterion())) {
+      pwm = std::move(other);
+      start = &*byStripes;
     }
   }
   if (pwm && pwm->misfit() > vpPulseSearch::allExplained &&

@@ -172,6 +172,55 @@ std::vector<double> vpStripeStarts::envelopeOfPeriod(const vpStripeProfile &prof
   return smooth;
 }
 
+std::vector<double> vpStripeStarts::envelopeOfStripes(const vpStripeProfile &profile,
+                                                      const std::vector<size_t> &peaks)
+{
+  static const double lit = 0.1;        // of the peak's light
+  static const size_t part = 5, few = 3; // of a stripe, at each end, that edges may soften; lines
+  const size_t n = profile.light.size();
+  std::vector<double> logs; // of a stripe's envelope at its first and last line, stripe by stripe
+  std::vector<size_t> lines;
+  for (const size_t peak : peaks) {
+    size_t first = peak, last = peak;
+    while (first > 0 && profile.light[first - 1] > lit * profile.light[peak]) {
+      --first;
+    }
+    while (last + 1 < n && profile.light[last + 1] > lit * profile.light[peak]) {
+      ++last;
+    }
+    const size_t cut = (last - first + 1) / part, from = first + cut, to = last - cut;
+    double mean = 0, middle = 0.5 * static_cast<double>(from + to), products = 0, squares = 0;
+    for (size_t i = from; i <= to; ++i) {
+      const double log = std::log(std::max(profile.light[i], 0.5)), at = static_cast<double>(i) - middle;
+      mean += log / static_cast<double>(to - from + 1);
+      products += at * log;
+      squares += at * at;
+    }
+    const double slope = to - from + 1 > few ? products / squares : 0;
+    if (lines.empty() || first > lines.back()) {
+      for (const size_t end : {first, last}) {
+        lines.push_back(end);
+        logs.push_back(mean + slope * (static_cast<double>(end) - middle));
+      }
+    }
+  }
+  std::vector<double> envelope;
+  size_t next = 0; // of the lines with a known envelope, the first that is not before
+  for (size_t i = 0; i < n; ++i) {
+    while (next < lines.size() && lines[next] < i) {
+      ++next;
+    }
+    if (next == 0 || next == lines.size()) {
+      envelope.push_back(std::exp(logs[next == 0 ? 0 : next - 1]));
+    } else {
+      const double way = static_cast<double>(i - lines[next - 1]) /
+                         std::max(1.0, static_cast<double>(lines[next] - lines[next - 1]));
+      envelope.push_back(std::exp(logs[next - 1] + way * (logs[next] - logs[next - 1])));
+    }
+  }
+  return envelope;
+}
+
 std::vector<vpStripeStarts::Edge> vpStripeStarts::edges(const vpStripeProfile &profile,
                                                         const std::vector<double> &envelope)
 {
