@@ -203,8 +203,8 @@ std::optional<vpOutlineFit> withoutCompanion(const vpEdgeFitPicture &picture, co
 
 /*!
   Light that grows inwards makes a blurred edge seem farther in, by the square of its blur times the growth:
-  to one side of an uneven emitter more than to the other. All of the growth may lie within the pixels that the
-  edge is fitted to.
+  to one side of an uneven emitter more than to the other. All of the growth may lie within the pixels that
+  the edge is fitted to.
 */
 void addGrowthDoubt(vpOutlineFit &fit, double evenness)
 {

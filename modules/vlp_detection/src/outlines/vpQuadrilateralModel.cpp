@@ -53,7 +53,8 @@ vpQuadrilateralModel vpQuadrilateralModel::from(const std::vector<cv::Point2f> &
   for (int axis = 0; axis < 2; ++axis) {
     model.m_middleSigma[axis] = model.m_scale;
     if (std::abs(model.m_normal[axis].x()) < alongLines) {
-      // Where the lamp is dark no line shows these sides: each lies anywhere in the gap beyond the last lit line.
+      // Where the lamp is dark no line shows these sides: each lies anywhere in the gap beyond the last lit
+      // line.
       static const double blurred = 1; // px, that light may reach over them or fall short of them
       model.m_middleSigma[axis] = blurred + longestGap(points) / std::sqrt(24.0);
     }

@@ -56,9 +56,8 @@ std::vector<cv::Point2f> endsAt(const cv::Mat_<unsigned char> &lines, const vpLe
 std::vector<cv::Point2f> rimOf(const std::vector<cv::Point2f> &ends, const cv::Rect &box)
 {
   static const double share = 0.02, least = 1; // of the size; px
-  return vpChordHull::nearIt(
-      ends, vpChordHull::of(ends),
-      static_cast<float>(std::max(least, share * std::max(box.width, box.height))));
+  return vpChordHull::nearIt(ends, vpChordHull::of(ends),
+                             static_cast<float>(std::max(least, share * std::max(box.width, box.height))));
 }
 
 std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim, const cv::Rect &box)
@@ -78,8 +77,8 @@ std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim, const cv::Rect
   if (!model) {
     return std::nullopt;
   }
-  return Shape{
-      model->outline(Eigen::MatrixXd::Zero(vpEllipseModel::parameters, vpEllipseModel::parameters)), ellipse};
+  return Shape{model->outline(Eigen::MatrixXd::Zero(vpEllipseModel::parameters, vpEllipseModel::parameters)),
+               ellipse};
 }
 
 //! Median of the samples a little outside the ends.
@@ -142,8 +141,8 @@ std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels
 
 void vpRimFit::allowForGlow(vpOutlineFit &fit, const Eigen::Vector2d &light)
 {
-  static const double sharp = 0.02; // share of the radius, that half of all edges are known to
-  static const double steep = 4;    // power by which a sharper one is that of the lamp
+  static const double sharp = 0.02;   // share of the radius, that half of all edges are known to
+  static const double steep = 4;      // power by which a sharper one is that of the lamp
   static const double ofLight = 0.05; // share of the radius, standard deviation
   const double radius = 0.5 * fit.outline.diameter(),
                glow = 1 / (1 + std::pow(sharp * radius / std::max(fit.blur, 1e-6), steep));
@@ -184,7 +183,8 @@ std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, c
     if (weight > 0) {
       allowForGlow(*fit, sum / weight);
     }
-    if (fit->outline.shape == vpLampOutline::Shape::quadrilateral) { // a side along the lines may lie in the dark
+    if (fit->outline.shape ==
+        vpLampOutline::Shape::quadrilateral) { // a side along the lines may lie in the dark
       const double gap = vpChordShape::longestGap(roi);
       fit->outline.centreCovariance(1, 1) += gap * gap / 24;
     }

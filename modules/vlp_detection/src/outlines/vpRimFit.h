@@ -17,12 +17,11 @@ BEGIN_VISP_NAMESPACE
   The outline through the ends of the lit lines: for luminaires whose edges are too unlike each other, or too
   soft, to be fitted as one blurred step.
 
-  Ends are those at a grey level, and levels rise by the same factor. Ends inside the convex hull of all are no
-  rim: the emitter is dark there. An ellipse and a rectangle compete by their mean squared distance from the
-  rest. The outline is that of the level from which it changes least to the next (maximally stable, Matas et
-  al. 2002): there the lamp has its edge. By how much it changes while
-  the light halves is what is not known of it. What neighbouring ends are off by has one cause, so that they
-  count as few.
+  Ends are those at a grey level, and levels rise by the same factor. Ends inside the convex hull of all are
+  no rim: the emitter is dark there. An ellipse and a rectangle compete by their mean squared distance from
+  the rest. The outline is that of the level from which it changes least to the next (maximally stable, Matas
+  et al. 2002): there the lamp has its edge. By how much it changes while the light halves is what is not
+  known of it. What neighbouring ends are off by has one cause, so that they count as few.
 */
 namespace vpRimFit
 {
@@ -35,9 +34,9 @@ constexpr double levelRatio = 1.25;
 std::optional<vpOutlineFit> mostStable(const std::vector<Ends> &levels, const cv::Rect &box, size_t &chosen);
 
 /*!
-  An edge that is no sharper than a lens makes it may be that of a glow, or of a housing that the lamp lights: then
-  the lamp's middle is that of its light. Both are held together, by the probability of each.
-  \param fit By mostStable(). \param light Middle of the light, px.
+  An edge that is no sharper than a lens makes it may be that of a glow, or of a housing that the lamp lights:
+  then the lamp's middle is that of its light. Both are held together, by the probability of each. \param fit
+  By mostStable(). \param light Middle of the light, px.
 */
 void allowForGlow(vpOutlineFit &fit, const Eigen::Vector2d &light);
 

@@ -22,7 +22,7 @@ const int thick = 3; // lines of a band
 
 //! A few lit lines together: what they have more than the dark lines beside them, sample by sample.
 struct Band {
-  int first, last; // lines
+  int first, last;                // lines
   std::vector<float> light, dark; // dark: what the dark lines have
 };
 
@@ -144,7 +144,8 @@ void Demodulation::drop(const std::vector<cv::Rect> &others)
 {
   for (Band &band : m_bands) {
     for (const cv::Rect &other : others) {
-      const int from = std::max(other.x - m_window.x, 0), to = std::min(other.br().x - m_window.x, m_window.width);
+      const int from = std::max(other.x - m_window.x, 0),
+                to = std::min(other.br().x - m_window.x, m_window.width);
       if (band.last >= other.y && band.first < other.br().y && from < to) {
         std::fill(band.light.begin() + from, band.light.begin() + to, 0.f);
       }
@@ -155,8 +156,8 @@ void Demodulation::drop(const std::vector<cv::Rect> &others)
 //! Of a stripe, a few lines each, against the dark lines nearest to the stripe.
 void Demodulation::addBands(int first, int last, const std::vector<int> &dark)
 {
-  static const int side = 2;            // samples
-  static const long enough = 4;         // dark lines to each side
+  static const int side = 2;    // samples
+  static const long enough = 4; // dark lines to each side
   const auto after = std::upper_bound(dark.begin(), dark.end(), last);
   const auto from = after - std::min<long>(enough, after - dark.begin()),
              to = after + std::min<long>(enough, dark.end() - after);
@@ -326,8 +327,8 @@ vpRimFit::Ends endsOf(const std::vector<Run> &outer, const std::vector<Band> &ba
 }
 
 /*!
-  A short side of a lamp that lies wholly in the dark between two stripes may be anywhere there, and the middle
-  with it. \param gap Lines, the longest in the dark.
+  A short side of a lamp that lies wholly in the dark between two stripes may be anywhere there, and the
+  middle with it. \param gap Lines, the longest in the dark.
 */
 void addHiddenSides(vpLampOutline &outline, double gap)
 {

@@ -139,7 +139,8 @@ bool onlyLampsBefore(const Group &around, const std::vector<Group> &tree,
   for (int node : above) {
     const Group &part = tree[node];
     const bool like = part.roi.lampness > likeALamp,
-               own = around.size() > farLarger * part.size() && vpOwnStripes(part.roi, around.roi, lines, dark.level);
+               own = around.size() > farLarger * part.size() &&
+                     vpOwnStripes(part.roi, around.roi, lines, dark.level);
     any = any || (like && own);
     if (like || own) {
       lamps.push_back(node);

@@ -14,7 +14,8 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! Mean light of each line of a box, grey levels above the picture's darkest places; and its standard deviation.
+//! Mean light of each line of a box, grey levels above the picture's darkest places; and its standard
+//! deviation.
 struct Stripes {
   std::vector<double> light;
   double swing = 0;
@@ -23,7 +24,8 @@ struct Stripes {
   {
     double sum = 0, squares = 0;
     for (int y = box.y; y < box.br().y; ++y) {
-      const double line = static_cast<double>(vpBrighter::sum(lines[y] + box.x, box.width)) / box.width - dark;
+      const double line =
+          static_cast<double>(vpBrighter::sum(lines[y] + box.x, box.width)) / box.width - dark;
       light.push_back(line);
       sum += line;
       squares += line * line;

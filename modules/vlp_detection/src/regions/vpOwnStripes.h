@@ -16,7 +16,8 @@ BEGIN_VISP_NAMESPACE
   All parts of one lamp are exposed at the same time and blink alike, so no fragment of a lamp has stripes of
   its own, however much brighter it is. \param dark Grey value of the picture's darkest places.
 */
-bool vpOwnStripes(const vpLedRoi &roi, const vpLedRoi &around, const cv::Mat_<unsigned char> &lines, double dark);
+bool vpOwnStripes(const vpLedRoi &roi, const vpLedRoi &around, const cv::Mat_<unsigned char> &lines,
+                  double dark);
 
 END_VISP_NAMESPACE
 

@@ -46,7 +46,6 @@ vpLedRoi joined(const vpLedRoi &a, const vpLedRoi &b)
   return roi;
 }
 
-
 bool tells(const vpLampObservation &lamp)
 {
   return vpLedIdEvidence::tells(lamp.features);
@@ -101,7 +100,8 @@ bool mayBlinkAlike(const vpLampObservation &a, const vpLampObservation &b)
   }
   const double between = 0.5 * (a.time + b.time),
                apart = (one.frequency - other.frequency) * between + one.phase - other.phase,
-               unknown = 0.5 * std::abs(a.time - b.time) * std::hypot(one.frequencySigma, other.frequencySigma);
+               unknown =
+                   0.5 * std::abs(a.time - b.time) * std::hypot(one.frequencySigma, other.frequencySigma);
   // The middle of a pulse is better known than its start.
   const double middles = apart - 0.5 * (one.duty - other.duty);
   return std::isnan(middles) || std::abs(std::remainder(middles, 1)) < most + sigmas * unknown;
@@ -188,9 +188,9 @@ bool vpLedDetector::readAround(const vpLinePicture &picture, Region &region) con
 {
   vpLedRoi around = region.roi;
   const int by = sizeOf(around.box);
-  around.box = cv::Rect(around.box.x - by, around.box.y - by, around.box.width + 2 * by,
-                        around.box.height + 2 * by) &
-               cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
+  around.box =
+      cv::Rect(around.box.x - by, around.box.y - by, around.box.width + 2 * by, around.box.height + 2 * by) &
+      cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
   const vpStripeFeatures features = agreedStripes(picture, vpOutlineFitter::boxOf(around), around);
   if (std::isnan(features.phase) || features.stripes <= region.lamp.features.stripes) {
     return false;

@@ -13,9 +13,9 @@
 #include <visp3/core/vpRect.h>
 #include <visp3/vlp_identification/vpLedIdEvidence.h>
 
-#include "vpSeenRegion.h"
 #include "stripes/vpLampGlance.h"
 #include "stripes/vpSteadyLight.h"
+#include "vpSeenRegion.h"
 #include <visp3/vlp_core/vpBrighter.h>
 
 BEGIN_VISP_NAMESPACE
@@ -306,17 +306,20 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   return vpLedIdEvidence::tells(other) && (!tells || other.misfit < features.misfit) ? other : features;
 }
 
-//! What the lines' means hide the columns may agree on. Nothing of fewer than three stripes: any texture has
-//! two shades that some columns agree on.
+//! What the lines' means hide the columns may agree on. Nothing of fewer than three stripes, or of a
+//! frequency that is hardly known: any texture has shades that some columns agree on.
 vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, const vpOutlineFit &fit,
                                               const vpLedRoi &roi) const
 {
   static const unsigned int few = 3;
+  static const double vague = 0.01; // share of the frequency
   vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
   agreed.exposure = m_exposure.exposure();
   agreed.logExposureSigma = m_exposure.logSigma();
   const vpStripeFeatures features = stripeAnalyzer.analyze(agreed);
-  return features.stripes >= few ? features : vpStripeFeatures();
+  const bool hardly = features.frequencySigma > vague * features.frequency;
+  return features.stripes >= few && !(vpLedIdEvidence::tells(features) && hardly) ? features
+                                                                                  : vpStripeFeatures();
 }
 
 /*!

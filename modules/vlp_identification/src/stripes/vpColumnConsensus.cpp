@@ -144,12 +144,12 @@ void SharedModulation::smooth(Strip &strip) const
   for (size_t i = 0; i < before.size(); ++i) {
     const double first = 1 / before[i].variance, second = 1 / after[i].variance;
     strip.variance[i] = 1 / (first + second);
-    strip.emission[i] =
-        std::max(0.0, strip.variance[i] * (first * before[i].mean + second * after[i].mean));
+    strip.emission[i] = std::max(0.0, strip.variance[i] * (first * before[i].mean + second * after[i].mean));
   }
 }
 
-//! Each line's modulation: strips where the emission jumps are outliers, Student's t of few degrees of freedom.
+//! Each line's modulation: strips where the emission jumps are outliers, Student's t of few degrees of
+//! freedom.
 void SharedModulation::share()
 {
   static const double freedom = 2;
@@ -200,8 +200,9 @@ void SharedModulation::shareTrend()
     ratios.clear();
     const bool told = m_modulation[i] > lit && m_modulation[i - 1] > lit; // in the dark nothing is
     for (const Strip &strip : m_strips) {
-      if (told && strip.emission[i - 1] > dimmest * m_brightest && strip.emission[i] > dimmest * m_brightest &&
-          !std::isnan(strip.light[i]) && !std::isnan(strip.light[i - 1])) {
+      if (told && strip.emission[i - 1] > dimmest * m_brightest &&
+          strip.emission[i] > dimmest * m_brightest && !std::isnan(strip.light[i]) &&
+          !std::isnan(strip.light[i - 1])) {
         ratios.push_back(strip.emission[i] / strip.emission[i - 1]);
       }
     }
@@ -294,13 +295,15 @@ vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();
   const int width = std::max(narrowest, roi.box.width / mostStrips);
-  SharedModulation shared(stripsOf(lines, roi.box, fit.outline, width), noiseOf(lines, roi.box) / std::sqrt(width));
+  SharedModulation shared(stripsOf(lines, roi.box, fit.outline, width),
+                          noiseOf(lines, roi.box) / std::sqrt(width));
   for (int round = 0; round < rounds; ++round) {
     shared.iterate();
   }
   for (size_t i = 0; i < shared.lines(); ++i) {
     if (shared.sigma(i) < unknown) {
-      profile.time.push_back(timing.middle(static_cast<unsigned int>(roi.box.y) + static_cast<unsigned int>(i)));
+      profile.time.push_back(
+          timing.middle(static_cast<unsigned int>(roi.box.y) + static_cast<unsigned int>(i)));
       profile.light.push_back(lit * shared.modulation(i));
       profile.sigma.push_back(std::max(least, lit * shared.sigma(i)));
     }

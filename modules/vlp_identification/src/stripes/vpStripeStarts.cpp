@@ -175,7 +175,7 @@ std::vector<double> vpStripeStarts::envelopeOfPeriod(const vpStripeProfile &prof
 std::vector<double> vpStripeStarts::envelopeOfStripes(const vpStripeProfile &profile,
                                                       const std::vector<size_t> &peaks)
 {
-  static const double lit = 0.1;        // of the peak's light
+  static const double lit = 0.1;         // of the peak's light
   static const size_t part = 5, few = 3; // of a stripe, at each end, that edges may soften; lines
   const size_t n = profile.light.size();
   std::vector<double> logs; // of a stripe's envelope at its first and last line, stripe by stripe

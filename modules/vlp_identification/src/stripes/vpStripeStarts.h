@@ -38,8 +38,8 @@ std::vector<double> envelope(const vpStripeProfile &profile, const std::vector<s
 std::vector<double> envelopeOfPeriod(const vpStripeProfile &profile, double frequency);
 
 /*!
-  The same of an emitter whose light grows or falls within a stripe by as much as that of a hot spot: each stripe
-  has a slope of its own. \param peaks One at least.
+  The same of an emitter whose light grows or falls within a stripe by as much as that of a hot spot: each
+  stripe has a slope of its own. \param peaks One at least.
 */
 std::vector<double> envelopeOfStripes(const vpStripeProfile &profile, const std::vector<size_t> &peaks);
 

@@ -33,14 +33,16 @@ public:
 
   /*!
     \param lit Of each line of the picture, the light of the lamp as a share of its most. \param seed A part
-    of the lamp. \param others Boxes of other lamps, whose light does not count. \return The light that blinks like that and hangs together with the seed, dark patches of
-    half the seed's size apart; nothing where that has no shape of a lamp.
+    of the lamp. \param others Boxes of other lamps, whose light does not count. \return The light that blinks
+    like that and hangs together with the seed, dark patches of half the seed's size apart; nothing where that
+    has no shape of a lamp.
   */
   /*!
-    How much of a region's light keeps to the lines on which the lamp is lit: 1 all of what does blink so, 0 no
-    more of it than chance has.
+    How much of a region's light keeps to the lines on which the lamp is lit: 1 all of what does blink so, 0
+    no more of it than chance has.
   */
-  static double share(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit, const cv::Rect &box);
+  static double share(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
+                      const cv::Rect &box);
 
   static std::optional<Extent> about(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
                                      const vpLedRoi &seed, const std::vector<cv::Rect> &others);
