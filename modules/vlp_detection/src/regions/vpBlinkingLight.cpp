@@ -32,6 +32,11 @@ struct Run {
   int first, last;
 };
 
+cv::Rect grown(const cv::Rect &box, int by)
+{
+  return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
+}
+
 //! Sum of each sample over some lines.
 void addLine(const cv::Mat_<unsigned char> &lines, int line, const cv::Rect &window, std::vector<float> &sum)
 {
@@ -143,7 +148,8 @@ void Demodulation::dropOthers()
 void Demodulation::drop(const std::vector<cv::Rect> &others)
 {
   for (Band &band : m_bands) {
-    for (const cv::Rect &other : others) {
+    for (const cv::Rect &box : others) {
+      const cv::Rect other = grown(box, 4 + std::max(box.width, box.height) / 16); // its halo, too
       const int from = std::max(other.x - m_window.x, 0),
                 to = std::min(other.br().x - m_window.x, m_window.width);
       if (band.last >= other.y && band.first < other.br().y && from < to) {
@@ -243,13 +249,24 @@ std::vector<Run> Demodulation::runsAbove(double level) const
   return runs;
 }
 
-//! The runs that hang together with a seed: no more than \e reach from each other, px.
+//! Lines, the most that are dark from one band to the next.
+int longestGap(const std::vector<Band> &bands)
+{
+  int gap = 0;
+  for (size_t k = 1; k < bands.size(); ++k) {
+    gap = std::max(gap, bands[k].first - bands[k - 1].last);
+  }
+  return gap;
+}
+
+//! The runs that hang together with a seed: no more than \e reach from each other, px, and a dark gap.
 std::vector<Run> connected(const std::vector<Run> &runs, const std::vector<Band> &bands, const cv::Rect &seed,
                            int reach)
 {
+  const int lines = reach + longestGap(bands);
   auto near = [&](const Run &a, const Run &b) {
-    return bands[b.band].first - bands[a.band].last <= reach &&
-           bands[a.band].first - bands[b.band].last <= reach && b.first - a.last <= reach &&
+    return bands[b.band].first - bands[a.band].last <= lines &&
+           bands[a.band].first - bands[b.band].last <= lines && b.first - a.last <= reach &&
            a.first - b.last <= reach;
   };
   std::vector<Run> found;
@@ -383,10 +400,6 @@ bool isCut(const vpLedRoi &roi, const cv::Rect &window)
          roi.box.br().y >= window.br().y;
 }
 
-cv::Rect grown(const cv::Rect &box, int by)
-{
-  return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
-}
 } // namespace
 
 double vpBlinkingLight::share(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
@@ -417,7 +430,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
   static const double sigmas = 4, least = 1, most = 0.5; // of the noise; grey levels; of the brightest light
   static const int rounds = 3;
   const cv::Rect picture(0, 0, lines.cols, lines.rows);
-  const int size = std::max(seed.box.width, seed.box.height), reach = std::max(3, size / 2);
+  const int size = std::max(seed.box.width, seed.box.height), reach = std::max(3, size / 4);
   cv::Rect box = seed.box;
   for (int round = 0; round < rounds; ++round) {
     const cv::Rect window = grown(box, size) & picture;

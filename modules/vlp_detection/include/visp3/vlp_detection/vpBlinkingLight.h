@@ -34,7 +34,7 @@ public:
   /*!
     \param lit Of each line of the picture, the light of the lamp as a share of its most. \param seed A part
     of the lamp. \param others Boxes of other lamps, whose light does not count. \return The light that blinks
-    like that and hangs together with the seed, dark patches of half the seed's size apart; nothing where that
+    like that and hangs together with the seed, dark patches of a quarter of the seed's size apart; nothing where that
     has no shape of a lamp.
   */
   /*!
