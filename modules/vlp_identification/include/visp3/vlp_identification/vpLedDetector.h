@@ -80,6 +80,14 @@ public:
   //! What the lamps of all pictures so far say of the exposure.
   const vpExposureEvidence &exposure() const { return m_exposure; }
 
+  /*!
+    The light inside a lamp's outline, line by line, as vpStripeProfile::along() reads it, with the exposure
+    that is known by now: what an observation's features come from, where its lamp is evenly lit. Lines that
+    the outline does not hold whole are left out. \param lamp Of that picture. \throw vpException
+    (dimensionError) where \e I has not the size that the rig states.
+  */
+  vpStripeProfile profile(const vpImage<unsigned char> &I, const vpLampObservation &lamp) const;
+
 private:
   struct Region;
   bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
