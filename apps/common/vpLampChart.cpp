@@ -12,7 +12,6 @@
 #include <opencv2/imgproc.hpp>
 #include <visp3/vlp_identification/vpLitShare.h>
 
-#include "common/vpMapSheet.h"
 #include "common/vpTextBlock.h"
 #include "common/vpVlpColours.h"
 
@@ -33,32 +32,39 @@ bool blinks(const vpLampObservation &lamp)
 std::vector<double> fittedTo(const vpStripeProfile &profile, const vpStripeFeatures &features)
 {
   const std::vector<double> lit = vpLitShareOf(features, profile.time);
-  constexpr Eigen::Index terms = 4; // offset, and an envelope of second degree
   const auto lines = static_cast<Eigen::Index>(lit.size());
-  if (lines <= terms ||
-      !std::all_of(lit.begin(), lit.end(), [](double share) { return std::isfinite(share); })) {
+  static const Eigen::Index highest = 4, each = 8; // order of the envelope; lines, that each order needs
+  const Eigen::Index order = std::min(highest, lines / each);
+  const auto finite = [](double share) { return std::isfinite(share); };
+  if (lines < 2 || !std::all_of(lit.begin(), lit.end(), finite)) {
     return {};
   }
-  const Eigen::Map<const Eigen::VectorXd> share(lit.data(), lines), light(profile.light.data(), lines);
+  Eigen::MatrixXd model(lines, order + 2); // the offset, and what the orders of the envelope make of the wave
+  model.col(0).setOnes();
+  model.col(1) = Eigen::Map<const Eigen::VectorXd>(lit.data(), lines);
   const Eigen::VectorXd along = Eigen::VectorXd::LinSpaced(lines, -1, 1);
-  Eigen::MatrixXd model(lines, terms);
-  model << Eigen::VectorXd::Ones(lines), share, share.cwiseProduct(along),
-      share.cwiseProduct(along.cwiseProduct(along));
+  for (Eigen::Index i = 1; i <= order; ++i) {
+    model.col(i + 1) = model.col(i).cwiseProduct(along);
+  }
+  const Eigen::Map<const Eigen::VectorXd> light(profile.light.data(), lines);
   const Eigen::VectorXd fitted = model * model.colPivHouseholderQr().solve(light);
   return {fitted.data(), fitted.data() + lines};
 }
 
 std::vector<std::string> exposureText(const vpExposureEvidence &exposure)
 {
-  const double found = exposure.exposure();
-  return {vpFormat("exposure: rig claims %.3g us,", 1e6 * exposure.stated()),
-          vpFormat("stripes show %.3g +/- %.2g us", 1e6 * found, 1e6 * found * exposure.logSigma())};
+  const double claimed = 1e6 * exposure.stated(), found = 1e6 * exposure.exposure(),
+               sigma = found * exposure.logSigma();     // us
+  const bool open = found < claimed || found > claimed; // else the rig left the stripes nothing to say
+  return {vpFormat("exposure: rig says %.3g us,", claimed),
+          open ? vpFormat("stripes say %.3g +/- %.2g us", found, sigma)
+               : vpFormat("not measured, +/- %.2g us", sigma)};
 }
 
 //! Where times and grey levels are in a chart.
 struct Axes {
   cv::Rect plot;
-  double firstTime, lastTime, most; // s; grey levels, from 0
+  double firstTime, lastTime, most; // s; light, from 0
 
   cv::Point2d operator()(double time, double light) const
   {
@@ -82,7 +88,7 @@ Axes axesOf(const vpLampChart &chart, const cv::Rect &plot)
 void drawAxes(cv::Mat &picture, const Axes &axes, double unit)
 {
   const cv::Rect &plot = axes.plot;
-  const double small = 0.85 * unit;
+  const double small = 0.8 * unit;
   const int gap = cvRound(4 * unit), below = plot.br().y + cvRound(12 * unit);
   cv::line(picture, plot.tl(), {plot.x, plot.br().y}, vpVlpColours::grey, 1);
   cv::line(picture, {plot.x, plot.br().y}, plot.br(), vpVlpColours::grey, 1);
@@ -97,7 +103,7 @@ void drawAxes(cv::Mat &picture, const Axes &axes, double unit)
 
 void drawLegend(cv::Mat &picture, const Axes &axes, bool fitted, double unit)
 {
-  const double small = 0.85 * unit;
+  const double small = 0.8 * unit;
   const int base = axes.plot.y - cvRound(4 * unit);
   const std::string light = "light of each line";
   vpDrawText(picture, light, {axes.plot.x, base}, small, vpVlpColours::white);
@@ -109,11 +115,11 @@ void drawLegend(cv::Mat &picture, const Axes &axes, bool fitted, double unit)
 
 cv::Mat vpLampChart::draw(double unit) const
 {
-  cv::Mat picture(cvRound(126 * unit), cvRound(236 * unit), CV_8UC3, vpMapSheet::ground);
+  cv::Mat picture(cvRound(88 * unit), cvRound(204 * unit), CV_8UC3, cv::Scalar::all(0));
   if (time.empty()) {
     return picture;
   }
-  const int left = cvRound(28 * unit), top = cvRound(18 * unit), low = cvRound(18 * unit),
+  const int left = cvRound(28 * unit), top = cvRound(15 * unit), low = cvRound(16 * unit),
             right = cvRound(8 * unit);
   const Axes axes = axesOf(*this, {left, top, picture.cols - left - right, picture.rows - top - low});
   drawAxes(picture, axes, unit);

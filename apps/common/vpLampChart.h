@@ -18,19 +18,20 @@ BEGIN_VISP_NAMESPACE
 struct vpLampChart {
   size_t lamp = 0;                  // index into the observations
   std::vector<double> time;         // s, of each line of the region, after the start of the frame
-  std::vector<double> light;        // grey levels, of each line
-  std::vector<double> fitted;       // grey levels, of the wave that was fitted; empty where there is none
+  std::vector<double> light;        // of each line, as of vpLedDetector::profile()
+  std::vector<double> fitted;       // the same of the wave that was fitted; empty where there is none
   std::vector<std::string> caption; // the exposure that the rig claims and the one that the stripes show
 
-  //! Dots for the light of each line, a line for the fitted wave, over time. \param unit As of vpTextBlock.
+  //! Dots for the light of each line, a line for the fitted wave, over time, on a black ground. \param unit
+  //! As of vpTextBlock.
   cv::Mat draw(double unit) const;
 };
 
 /*!
   Charts of the three largest regions that blink and have no id: those whose signal is not unmodulated, and
-  those of three lines or more with a modulation depth of 5 % or more. The fitted wave is
-  o + (a + b t + c t^2) S(t), S the lit share that the features say (vpLitShareOf()), the rest by least
-  squares to the light.
+  those of three lines or more with a modulation depth of 5 % or more. The fitted wave is o + e(t) S(t): S is
+  the lit share that the features say (vpLitShareOf()), o and the envelope e, a polynomial of order 4 or less,
+  come from least squares.
 */
 std::vector<vpLampChart> vpLampChartsOf(const vpImage<unsigned char> &I,
                                         const std::vector<vpLampObservation> &observations,

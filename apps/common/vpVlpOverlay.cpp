@@ -152,14 +152,16 @@ vpTextBlock labelOf(const vpLampObservation &lamp, const std::string &said, cons
   if (!lamp.remark.empty() && lamp.remark.rfind(lines[0], 0) == 0) { // the remark says it, and more
     lines.clear();
   }
-  lines.push_back(vpFormat("confidence %.3f", lamp.confidence));
+  if (chart == nullptr) {
+    lines.push_back(vpFormat("confidence %.3f", lamp.confidence));
+  }
   if (!lamp.remark.empty() && lamp.remark != said) {
     lines.push_back(lamp.remark);
   }
   if (chart != nullptr) {
     lines.insert(lines.end(), chart->caption.begin(), chart->caption.end());
   }
-  const size_t columns = chart != nullptr ? 34 : 26; // letters, as wide as what stands above
+  const size_t columns = chart != nullptr ? 29 : 26; // letters, as wide as what stands above
   return vpTextBlock(lamp.id.empty() ? "?" : lamp.id.substr(0, 40), lines, vpVlpColours::ofLamp(lamp), unit,
                      columns);
 }
@@ -224,6 +226,7 @@ cv::Mat enlarged(const cv::Mat &grey, const View &view, double brighter, const v
 struct Label {
   vpTextBlock block;
   cv::Mat close; // may be empty
+  bool chart;    // and not its enlarged picture
   cv::Rect lamp;
   cv::Rect place = {};
 
@@ -251,7 +254,13 @@ void drawLabel(cv::Mat &picture, const Label &label)
   const cv::Rect close =
       cv::Rect(label.place.tl(), label.close.size()) & cv::Rect(cv::Point(), picture.size());
   if (!close.empty()) {
-    label.close(cv::Rect(cv::Point(), close.size())).copyTo(picture(close));
+    const cv::Mat above = label.close(cv::Rect(cv::Point(), close.size()));
+    cv::Mat shown = picture(close);
+    if (label.chart) { // dims what is below, as text does
+      cv::max(0.3 * shown, above, shown);
+    } else {
+      above.copyTo(shown);
+    }
   }
   cv::rectangle(picture, label.place, 0.5 * label.block.colour(), 1);
 }
@@ -301,11 +310,10 @@ std::vector<Label> labelsOf(const vpVlpLocation &location, const std::vector<vpL
     Label label = {labelOf(*turn.lamp, location.fix.refusal, turn.chart, view.unit),
                    turn.chart != nullptr ? turn.chart->draw(view.unit)
                                          : enlarged(grey, view, brighter, *turn.lamp),
-                   turn.box};
+                   turn.chart != nullptr, turn.box};
     label.place = layout.beside(turn.box, label.size(), gap, crowd);
     constexpr double crowded = 0.05;
-    if (turn.chart == nullptr && !label.close.empty() &&
-        layout.covered(label.place) > crowded) { // text goes first
+    if (!label.chart && !label.close.empty() && layout.covered(label.place) > crowded) { // text goes first
       label.close = cv::Mat();
       label.place = layout.beside(turn.box, label.size(), gap, crowd);
     }

@@ -6,6 +6,8 @@
 
 #include <visp3/vlp_identification/vpLedDetector.h>
 
+#include <visp3/vlp_identification/vpLitShare.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -64,6 +66,22 @@ double backgroundOf(const cv::Mat_<unsigned char> &lines, const vpLampOutline &o
   std::nth_element(beside.begin(), middle, beside.end());
   return *middle;
 }
+
+//! Share of the light's variance over the lines that goes with the lamp's waveform.
+double explained(const vpStripeProfile &profile, const vpStripeFeatures &features)
+{
+  const std::vector<double> share = vpLitShareOf(features, profile.time);
+  if (share.empty()) {
+    return 0;
+  }
+  const auto lines = static_cast<Eigen::Index>(share.size());
+  Eigen::ArrayXd wave = Eigen::Map<const Eigen::ArrayXd>(share.data(), lines),
+                 light = Eigen::Map<const Eigen::ArrayXd>(profile.light.data(), lines);
+  wave -= wave.mean();
+  light -= light.mean();
+  const double common = (wave * light).sum(), variances = wave.square().sum() * light.square().sum();
+  return common > 0 && variances > 0 ? common * common / variances : 0;
+}
 } // namespace
 
 vpStripeProfile vpLedDetector::profile(const vpImage<unsigned char> &I, const vpLampObservation &lamp) const
@@ -82,6 +100,12 @@ vpStripeProfile vpLedDetector::profile(const vpImage<unsigned char> &I, const vp
   static const double sigmas = 3; // of the blur, beyond which an edge shows no more of its lamp
   fit.background = backgroundOf(picture.grey, fit.outline, roi.box, sigmas * lamp.blur + 1);
   vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
+  if (!std::isnan(lamp.features.phase)) {
+    vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
+    if (explained(agreed, lamp.features) > explained(profile, lamp.features)) {
+      profile = std::move(agreed);
+    }
+  }
   profile.exposure = m_exposure.exposure();
   profile.logExposureSigma = m_exposure.logSigma();
   return profile;

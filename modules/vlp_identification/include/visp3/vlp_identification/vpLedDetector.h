@@ -81,9 +81,10 @@ public:
   const vpExposureEvidence &exposure() const { return m_exposure; }
 
   /*!
-    The light inside a lamp's outline, line by line, as vpStripeProfile::along() reads it, with the exposure
-    that is known by now: what an observation's features come from, where its lamp is evenly lit. Lines that
-    the outline does not hold whole are left out. \param lamp Of that picture. \throw vpException
+    The light inside a lamp's outline, line by line, with the exposure that is known by now: what an
+    observation's features come from. Read by vpStripeProfile::along() or agreedByColumns(), whichever the
+    features explain better; by along() where they have no phase. Empty where the outline has no line in the
+    picture. \param lamp Of that picture. \throw vpException
     (dimensionError) where \e I has not the size that the rig states.
   */
   vpStripeProfile profile(const vpImage<unsigned char> &I, const vpLampObservation &lamp) const;
