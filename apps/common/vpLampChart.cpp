@@ -135,11 +135,11 @@ cv::Mat vpLampChart::draw(double unit) const
     wave.push_back(fixed(time[i], fitted[i]));
   }
   if (!wave.empty()) {
-    cv::polylines(picture, wave, false, vpVlpColours::violet, std::max(1, cvRound(0.8 * unit)), cv::LINE_AA,
+    cv::polylines(picture, wave, false, vpVlpColours::violet, std::max(1, cvRound(0.5 * unit)), cv::LINE_AA,
                   bits);
   }
   for (size_t i = 0; i < light.size(); ++i) {
-    cv::circle(picture, fixed(time[i], light[i]), cvRound(1.3 * unit * (1 << bits)), vpVlpColours::white,
+    cv::circle(picture, fixed(time[i], light[i]), cvRound(1.1 * unit * (1 << bits)), vpVlpColours::white,
                cv::FILLED, cv::LINE_AA, bits);
   }
   return picture;

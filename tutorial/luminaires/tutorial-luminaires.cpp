@@ -60,6 +60,7 @@ int main(int argc, char **argv)
     scenario.frames = 2;
     vpSimulation simulation(scenario, 1); // the seed of all that is left to chance
     vpLedDetector detector(simulation.rig(), simulation.map());
+    detector.skipSteady = true; // lamps that do not blink are not what we look for
     size_t missing = 0;
     for (vpVlpFrame frame; simulation.next(frame);) {
       if (frame.timestamp == 0)
@@ -69,8 +70,10 @@ int main(int argc, char **argv)
       std::set<std::string> named;
       for (const vpLampObservation &seen : detector.observations()) {
         if (const vpLamp *lamp = simulation.map().find(seen.id)) {
-          print(seen, project(simulation, lamp->position, frame.timestamp));
-          named.insert(seen.id);
+          const Eigen::Vector2d truth = project(simulation, lamp->position, frame.timestamp);
+          print(seen, truth);
+          if ((seen.point - truth).norm() < 5) // px; a ghost image has the id, and is elsewhere
+            named.insert(seen.id);
         } else {
           std::printf("  ?         at (%7.2f, %7.2f) px: %s\n", seen.point.x(), seen.point.y(),
                       seen.remark.c_str());
@@ -79,7 +82,7 @@ int main(int argc, char **argv)
       for (const vpLamp &lamp : simulation.map().lamps)
         if (wholeInView(simulation.rig(), lamp, project(simulation, lamp.position, frame.timestamp)) &&
             named.count(lamp.id) == 0) {
-          std::printf("  %s is whole in view, and no region has its id\n", lamp.id.c_str());
+          std::printf("  %s is whole in view, and no region there has its id\n", lamp.id.c_str());
           ++missing;
         }
     }
