@@ -19,7 +19,7 @@ BEGIN_VISP_NAMESPACE
 namespace vpVlpColours
 {
 const cv::Scalar green(90, 230, 60), yellow(0, 225, 255), orange(100, 165, 225), white(240, 240, 240),
-    grey(150, 150, 150), blue(215, 130, 70);
+    grey(150, 150, 150), blue(215, 130, 70), violet(235, 120, 200);
 
 //! Green where a lamp counts for the position, yellow where it is known and does not, orange where it is no
 //! lamp of the map.

@@ -136,10 +136,11 @@ void drawStatus(cv::Mat &picture, const vpVlpLocation &location, double compute,
 }
 } // namespace
 
-cv::Mat vpVlpDashboard::draw(const vpImage<unsigned char> &I, const vpVlpLocation &location, double compute)
+cv::Mat vpVlpDashboard::draw(const vpImage<unsigned char> &I, const vpVlpLocation &location, double compute,
+                             const std::vector<vpLampChart> &charts)
 {
   m_panel.add(location);
-  const cv::Mat picture = vpDrawVlpOverlay(I, location);
+  const cv::Mat picture = vpDrawVlpOverlay(I, location, charts);
   const double unit = std::max(picture.cols, picture.rows) / 800.0; // as the overlay's
   const int width = cvRound(400 * unit), least = cvRound(520 * unit);
   const int height = std::max(picture.rows, least);

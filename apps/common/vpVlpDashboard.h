@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 #include <visp3/core/vpImage.h>
 
+#include "common/vpLampChart.h"
 #include "common/vpMapPanel.h"
 
 BEGIN_VISP_NAMESPACE
@@ -23,10 +24,11 @@ public:
   explicit vpVlpDashboard(const vpLampMap &map) : m_panel(map) {}
 
   /*!
-    One more frame. \param compute s, that it took. \return BGR, of one size for all frames of one size; the
-    frame in its upper left corner.
+    One more frame. \param compute s, that it took. \param charts As of vpDrawVlpOverlay(). \return BGR, of
+    one size for all frames of one size; the frame in its upper left corner.
   */
-  cv::Mat draw(const vpImage<unsigned char> &I, const vpVlpLocation &location, double compute);
+  cv::Mat draw(const vpImage<unsigned char> &I, const vpVlpLocation &location, double compute,
+               const std::vector<vpLampChart> &charts = {});
 
   //! For what else it shall show.
   vpMapPanel &map() { return m_panel; }

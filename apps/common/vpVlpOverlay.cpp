@@ -144,18 +144,26 @@ std::vector<std::string> signalText(const vpStripeFeatures &features)
   return lines;
 }
 
-//! \e said: what stands beside the picture already.
-vpTextBlock labelOf(const vpLampObservation &lamp, const std::string &said, double unit)
+//! \param said What stands beside the picture already. \param chart Of that lamp, or nullptr.
+vpTextBlock labelOf(const vpLampObservation &lamp, const std::string &said, const vpLampChart *chart,
+                    double unit)
 {
   std::vector<std::string> lines = signalText(lamp.features);
   if (!lamp.remark.empty() && lamp.remark.rfind(lines[0], 0) == 0) { // the remark says it, and more
     lines.clear();
   }
-  lines.push_back(vpFormat("confidence %.3f", lamp.confidence));
+  if (chart == nullptr) {
+    lines.push_back(vpFormat("confidence %.3f", lamp.confidence));
+  }
   if (!lamp.remark.empty() && lamp.remark != said) {
     lines.push_back(lamp.remark);
   }
-  return vpTextBlock(lamp.id.empty() ? "?" : lamp.id.substr(0, 40), lines, vpVlpColours::ofLamp(lamp), unit);
+  if (chart != nullptr) {
+    lines.insert(lines.end(), chart->caption.begin(), chart->caption.end());
+  }
+  const size_t columns = chart != nullptr ? 29 : 26; // letters, as wide as what stands above
+  return vpTextBlock(lamp.id.empty() ? "?" : lamp.id.substr(0, 40), lines, vpVlpColours::ofLamp(lamp), unit,
+                     columns);
 }
 
 //! Where an outline is in the view; empty where it is nowhere.
@@ -214,10 +222,11 @@ cv::Mat enlarged(const cv::Mat &grey, const View &view, double brighter, const v
   return close.picture;
 }
 
-//! A lamp's text, with its enlarged picture above.
+//! A lamp's text, with its chart or its enlarged picture above.
 struct Label {
   vpTextBlock block;
   cv::Mat close; // may be empty
+  bool chart;    // and not its enlarged picture
   cv::Rect lamp;
   cv::Rect place = {};
 
@@ -245,28 +254,46 @@ void drawLabel(cv::Mat &picture, const Label &label)
   const cv::Rect close =
       cv::Rect(label.place.tl(), label.close.size()) & cv::Rect(cv::Point(), picture.size());
   if (!close.empty()) {
-    label.close(cv::Rect(cv::Point(), close.size())).copyTo(picture(close));
+    const cv::Mat above = label.close(cv::Rect(cv::Point(), close.size()));
+    cv::Mat shown = picture(close);
+    if (label.chart) { // dims what is below, as text does
+      cv::max(0.3 * shown, above, shown);
+    } else {
+      above.copyTo(shown);
+    }
   }
   cv::rectangle(picture, label.place, 0.5 * label.block.colour(), 1);
+}
+
+//! The chart of that observation, or nullptr.
+const vpLampChart *chartOf(const std::vector<vpLampChart> &charts, size_t lamp)
+{
+  const auto found = std::find_if(charts.begin(), charts.end(),
+                                  [lamp](const vpLampChart &chart) { return chart.lamp == lamp; });
+  return found == charts.end() ? nullptr : &*found;
 }
 
 /*!
   A label for each lamp, most of them beside theirs. What counts for the position gets its place first, and of
   those the outermost, which leave the room inside to the others.
 */
-std::vector<Label> labelsOf(const vpVlpLocation &location, const cv::Mat &grey, const View &view,
-                            double brighter, vpTextLayout &layout)
+std::vector<Label> labelsOf(const vpVlpLocation &location, const std::vector<vpLampChart> &charts,
+                            const cv::Mat &grey, const View &view, double brighter, vpTextLayout &layout)
 {
   struct Turn {
     int rank;
     double outwards; // px from the middle of all, negative
     const vpLampObservation *lamp;
+    const vpLampChart *chart; // or nullptr
     cv::Rect box;
   };
   std::vector<Turn> turns;
   cv::Point2d crowd;
-  for (const vpLampObservation &lamp : location.observations) {
-    turns.push_back({lamp.accepted ? 0 : (lamp.id.empty() ? 2 : 1), 0, &lamp, boxOf(view, lamp.outline)});
+  for (size_t i = 0; i < location.observations.size(); ++i) {
+    const vpLampObservation &lamp = location.observations[i];
+    const vpLampChart *chart = chartOf(charts, i);
+    const bool tells = !lamp.id.empty() || chart != nullptr;
+    turns.push_back({lamp.accepted ? 0 : (tells ? 1 : 2), 0, &lamp, chart, boxOf(view, lamp.outline)});
     crowd += middleOf(turns.back().box) / static_cast<double>(location.observations.size());
   }
   for (Turn &turn : turns) {
@@ -280,11 +307,13 @@ std::vector<Label> labelsOf(const vpVlpLocation &location, const cv::Mat &grey, 
   const int gap = cvRound(6 * view.unit);
   std::vector<Label> labels;
   for (const Turn &turn : turns) {
-    Label label = {labelOf(*turn.lamp, location.fix.refusal, view.unit),
-                   enlarged(grey, view, brighter, *turn.lamp), turn.box};
+    Label label = {labelOf(*turn.lamp, location.fix.refusal, turn.chart, view.unit),
+                   turn.chart != nullptr ? turn.chart->draw(view.unit)
+                                         : enlarged(grey, view, brighter, *turn.lamp),
+                   turn.chart != nullptr, turn.box};
     label.place = layout.beside(turn.box, label.size(), gap, crowd);
     constexpr double crowded = 0.05;
-    if (!label.close.empty() && layout.covered(label.place) > crowded) { // text goes first
+    if (!label.chart && !label.close.empty() && layout.covered(label.place) > crowded) { // text goes first
       label.close = cv::Mat();
       label.place = layout.beside(turn.box, label.size(), gap, crowd);
     }
@@ -295,7 +324,8 @@ std::vector<Label> labelsOf(const vpVlpLocation &location, const cv::Mat &grey, 
 }
 } // namespace
 
-cv::Mat vpDrawVlpOverlay(const vpImage<unsigned char> &I, const vpVlpLocation &location)
+cv::Mat vpDrawVlpOverlay(const vpImage<unsigned char> &I, const vpVlpLocation &location,
+                         const std::vector<vpLampChart> &charts)
 {
   const cv::Mat grey(static_cast<int>(I.getRows()), static_cast<int>(I.getCols()), CV_8UC1, I.bitmap);
   if (grey.empty()) {
@@ -309,7 +339,7 @@ cv::Mat vpDrawVlpOverlay(const vpImage<unsigned char> &I, const vpVlpLocation &l
   for (const vpLampObservation &lamp : location.observations) {
     layout.avoid(boxOf(view, lamp.outline));
   }
-  const std::vector<Label> labels = labelsOf(location, grey, view, brighter, layout);
+  const std::vector<Label> labels = labelsOf(location, charts, grey, view, brighter, layout);
 
   drawWindows(view, location);
   for (const vpLampObservation &lamp : location.observations) {

@@ -5,9 +5,13 @@
 #ifndef vpVlpOverlay_h
 #define vpVlpOverlay_h
 
+#include <vector>
+
 #include <opencv2/core.hpp>
 #include <visp3/core/vpImage.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
+
+#include "common/vpLampChart.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -18,10 +22,13 @@ BEGIN_VISP_NAMESPACE
   is no lamp of the map; a cross at the lamp's image point; beside it id, confidence, frequency and duty with
   their standard deviations, and the remark.
 
+  \param charts Of observations of \e location that have no id: each stands above its lamp's text.
+
   \return BGR, between 800 and 1600 pixels on the longer side: small frames are enlarged by a whole number,
   large ones made smaller.
 */
-cv::Mat vpDrawVlpOverlay(const vpImage<unsigned char> &I, const vpVlpLocation &location);
+cv::Mat vpDrawVlpOverlay(const vpImage<unsigned char> &I, const vpVlpLocation &location,
+                         const std::vector<vpLampChart> &charts = {});
 
 END_VISP_NAMESPACE
 

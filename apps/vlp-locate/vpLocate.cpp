@@ -64,7 +64,7 @@ public:
         continue;
       }
       m_summary.add(located);
-      m_outputs.write(located);
+      m_outputs.write(located, m_localizer.tracker.detector);
       progress.show(located.index + 1);
     }
     progress.clear();

@@ -119,7 +119,8 @@ bool vpLocateOptions::parse(int argc, char **argv)
   vpAddName(app, "--fixes", fixes, "FILE", "write the poses with their doubt as CSV");
   vpAddName(app, "--seen", seen, "FILE", "write what was seen in each frame as CSV");
   vpAddName(app, "--overlay", overlay, "DIR",
-            "write a picture of each frame with what was seen, and the map");
+            "write a picture of each frame with what was seen, and the map; of lamps that blink and have no "
+            "id what was read of them");
   app.add_flag("--display", display,
                "show the same live in a window until a click there; without a screen: says so and goes on");
   if (!vpParseCommandLine(app, argc, argv)) {

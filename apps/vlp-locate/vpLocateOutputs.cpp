@@ -97,7 +97,7 @@ vpLocateOutputs::vpLocateOutputs(const vpLocateOptions &options, const vpLampMap
   }
 }
 
-void vpLocateOutputs::write(const vpLocatedFrame &located)
+void vpLocateOutputs::write(const vpLocatedFrame &located, const vpLedDetector &detector)
 {
   writePose(located.location);
   if (m_posesToStdout) {
@@ -110,7 +110,7 @@ void vpLocateOutputs::write(const vpLocatedFrame &located)
     writeSeen(located);
   }
   if (!m_overlay.empty() || m_window) {
-    draw(located);
+    draw(located, detector);
   }
 }
 
@@ -181,9 +181,11 @@ void vpLocateOutputs::writeSeen(const vpLocatedFrame &located)
   }
 }
 
-void vpLocateOutputs::draw(const vpLocatedFrame &located)
+void vpLocateOutputs::draw(const vpLocatedFrame &located, const vpLedDetector &detector)
 {
-  const cv::Mat picture = m_dashboard.draw(located.frame.I, located.location, located.compute);
+  const cv::Mat picture =
+      m_dashboard.draw(located.frame.I, located.location, located.compute,
+                       vpLampChartsOf(located.frame.I, located.location.observations, detector));
   if (!m_overlay.empty()) {
     vpWritePicture((fs::path(m_overlay) / overlayName(located)).string(), picture);
   }

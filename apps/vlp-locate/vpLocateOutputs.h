@@ -34,7 +34,8 @@ public:
   */
   vpLocateOutputs(const vpLocateOptions &options, const vpLampMap &map, std::function<int()> closed);
 
-  void write(const vpLocatedFrame &located);
+  //! \param detector Which saw that frame last.
+  void write(const vpLocatedFrame &located, const vpLedDetector &detector);
 
   //! Gives the files their names.
   void commit();
@@ -50,7 +51,7 @@ private:
   void writePose(const vpVlpLocation &location);
   void writeFix(const vpLocatedFrame &located);
   void writeSeen(const vpLocatedFrame &located);
-  void draw(const vpLocatedFrame &located);
+  void draw(const vpLocatedFrame &located, const vpLedDetector &detector);
 
   bool m_posesToStdout;
   std::string m_overlay; // folder, or empty

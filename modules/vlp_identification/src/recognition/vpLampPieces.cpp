@@ -14,9 +14,9 @@
 #include <Eigen/LU>
 #include <visp3/vlp_detection/vpBlinkingLight.h>
 #include <visp3/vlp_identification/vpLedIdEvidence.h>
+#include <visp3/vlp_identification/vpLitShare.h>
 
 #include "vpSeenRegion.h"
-#include "waveform/vpLitShare.h"
 
 BEGIN_VISP_NAMESPACE
 

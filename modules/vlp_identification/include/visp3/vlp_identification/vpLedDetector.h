@@ -80,6 +80,15 @@ public:
   //! What the lamps of all pictures so far say of the exposure.
   const vpExposureEvidence &exposure() const { return m_exposure; }
 
+  /*!
+    The light inside a lamp's outline, line by line, with the exposure that is known by now: what an
+    observation's features come from. Read by vpStripeProfile::along() or agreedByColumns(), whichever the
+    features explain better; by along() where they have no phase. Empty where the outline has no line in the
+    picture. \param lamp Of that picture. \throw vpException
+    (dimensionError) where \e I has not the size that the rig states.
+  */
+  vpStripeProfile profile(const vpImage<unsigned char> &I, const vpLampObservation &lamp) const;
+
 private:
   struct Region;
   bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);

@@ -1,0 +1,114 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// vpLedDetector::profile(): what was read of a lamp, for a person to look at.
+
+#include <visp3/vlp_identification/vpLedDetector.h>
+
+#include <visp3/vlp_identification/vpLitShare.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! An outline of u and v as one of samples and lines of a transposed picture.
+vpLampOutline transposed(vpLampOutline outline)
+{
+  std::swap(outline.centre.x(), outline.centre.y());
+  outline.angle = std::remainder(M_PI / 2 - outline.angle, M_PI);
+  for (Eigen::Vector2d &corner : outline.corners) {
+    std::swap(corner.x(), corner.y());
+  }
+  return outline;
+}
+
+//! The lines and samples that an outline holds, clipped to the picture.
+cv::Rect boxOf(const vpLampOutline &outline, cv::Size picture)
+{
+  const Eigen::Array4d box = outline.box();
+  if (!box.isFinite().all()) {
+    return {};
+  }
+  const auto near = [](double x, int pixels) {
+    return static_cast<int>(std::clamp(x, -1.0, static_cast<double>(pixels)));
+  };
+  const cv::Point first(near(std::floor(box(0)), picture.width), near(std::floor(box(1)), picture.height)),
+      last(near(std::ceil(box(2)), picture.width), near(std::ceil(box(3)), picture.height));
+  return cv::Rect(first, last + cv::Point(1, 1)) & cv::Rect(cv::Point(), picture);
+}
+
+//! Median grey value of the pixels to the left and right of the outline, \e gap beside it.
+double backgroundOf(const cv::Mat_<unsigned char> &lines, const vpLampOutline &outline, const cv::Rect &box,
+                    double gap)
+{
+  std::vector<unsigned char> beside;
+  for (int line = box.y; line < box.br().y; ++line) {
+    double first, last;
+    if (!outline.stretch(line, first, last)) {
+      continue;
+    }
+    for (const double sample : {std::floor(first - gap), std::ceil(last + gap)}) {
+      if (sample >= 0 && sample < lines.cols) {
+        beside.push_back(lines(line, static_cast<int>(sample)));
+      }
+    }
+  }
+  if (beside.empty()) {
+    return 0;
+  }
+  const auto middle = beside.begin() + static_cast<long>(beside.size() / 2);
+  std::nth_element(beside.begin(), middle, beside.end());
+  return *middle;
+}
+
+//! Share of the light's variance over the lines that goes with the lamp's waveform.
+double explained(const vpStripeProfile &profile, const vpStripeFeatures &features)
+{
+  const std::vector<double> share = vpLitShareOf(features, profile.time);
+  if (share.empty()) {
+    return 0;
+  }
+  const auto lines = static_cast<Eigen::Index>(share.size());
+  Eigen::ArrayXd wave = Eigen::Map<const Eigen::ArrayXd>(share.data(), lines),
+                 light = Eigen::Map<const Eigen::ArrayXd>(profile.light.data(), lines);
+  wave -= wave.mean();
+  light -= light.mean();
+  const double common = (wave * light).sum(), variances = wave.square().sum() * light.square().sum();
+  return common > 0 && variances > 0 ? common * common / variances : 0;
+}
+} // namespace
+
+vpStripeProfile vpLedDetector::profile(const vpImage<unsigned char> &I, const vpLampObservation &lamp) const
+{
+  check(I);
+  const vpLinePicture picture(I, m_rig.shutter.alongColumns());
+  vpOutlineFit fit;
+  fit.outline = picture.transposed ? transposed(lamp.outline) : lamp.outline;
+  fit.blur = lamp.blur;
+  fit.noise = lamp.noise;
+  vpLedRoi roi;
+  roi.box = boxOf(fit.outline, picture.grey.size());
+  if (roi.box.empty()) {
+    return {};
+  }
+  static const double sigmas = 3; // of the blur, beyond which an edge shows no more of its lamp
+  fit.background = backgroundOf(picture.grey, fit.outline, roi.box, sigmas * lamp.blur + 1);
+  vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
+  if (!std::isnan(lamp.features.phase)) {
+    vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
+    if (explained(agreed, lamp.features) > explained(profile, lamp.features)) {
+      profile = std::move(agreed);
+    }
+  }
+  profile.exposure = m_exposure.exposure();
+  profile.logExposureSigma = m_exposure.logSigma();
+  return profile;
+}
+
+END_VISP_NAMESPACE
