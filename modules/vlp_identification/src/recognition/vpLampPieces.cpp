@@ -127,6 +127,7 @@ bool isDoubleOf(const vpLampObservation &one, const vpLampObservation &other)
 void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &regions)
 {
   joinPieces(picture, regions);
+  takeApart(picture, regions);
   std::stable_sort(regions.begin(), regions.end(), [](const Region &a, const Region &b) {
     return tells(a.lamp) != tells(b.lamp) ? tells(a.lamp) : a.lamp.features.area > b.lamp.features.area;
   });
@@ -145,6 +146,33 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
     if (std::any_of(regions.begin(), regions.end(),
                     [&lamp](const Region &other) { return isDoubleOf(lamp, other.lamp); })) {
       regions.erase(regions.begin() + static_cast<long>(i));
+    }
+  }
+}
+
+//! Lamps whose glow joins them blink in two ways: brighter parts of such a region may tell alone.
+void vpLedDetector::takeApart(const vpLinePicture &picture, std::vector<Region> &regions)
+{
+  for (size_t i = regions.size(); i-- > 0;) {
+    const vpLedRoi roi = regions[i].roi;
+    double darkest = 0;
+    cv::minMaxLoc(picture.grey(roi.box), &darkest);
+    for (const double times : {2.0, 4.0}) {
+      if (!blinksSomehow(regions[i].lamp)) {
+        break; // steady, or taken apart already
+      }
+      vpLedRoiDetector bright = roiDetector;
+      bright.minContrast = times * (roi.level - darkest);
+      std::vector<Region> parts;
+      for (const vpLedRoi &part : bright.detect(picture.grey, roi.box)) {
+        if ((part.box & roi.box) == part.box) {
+          parts.push_back(observe(picture, part));
+        }
+      }
+      if (std::any_of(parts.begin(), parts.end(), [](const Region &part) { return tells(part.lamp); })) {
+        regions[i] = parts.front();
+        regions.insert(regions.end(), parts.begin() + 1, parts.end());
+      }
     }
   }
 }

@@ -101,6 +101,7 @@ private:
   void shareExposure(const vpLinePicture &picture, std::vector<Region> &regions);
   void recognise(std::vector<Region> &regions);
   void joinPieces(const vpLinePicture &picture, std::vector<Region> &regions);
+  void takeApart(const vpLinePicture &picture, std::vector<Region> &regions);
   bool readAround(const vpLinePicture &picture, Region &region) const;
   void complete(const vpLinePicture &picture, std::vector<Region> &regions);
   void completeOne(const vpLinePicture &picture, std::vector<Region> &regions, size_t &i) const;
