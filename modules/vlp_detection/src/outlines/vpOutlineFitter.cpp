@@ -368,6 +368,9 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   if (sound && best.outline.shape != vpLampOutline::Shape::region) {
     addGrowthDoubt(best, edges);
   }
+  if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
+    vpRimFit::addHiddenSides(best.outline, vpChordShape::longestGap(roi));
+  }
   return best;
 }
 

@@ -139,6 +139,19 @@ std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels
   return best;
 }
 
+void vpRimFit::addHiddenSides(vpLampOutline &outline, double gap)
+{
+  for (size_t side = 0; side < 2 && gap > 0; ++side) {
+    const Eigen::Vector2d along = outline.corners[side + 1] - outline.corners[side],
+                          axis = (outline.corners[(side + 2) % 4] - outline.corners[side + 1]).normalized();
+    const double hidden = gap - 0.5 * std::abs(along.y()); // half of a side tells where it is
+    if (hidden > 0) {
+      const double reach = hidden / std::max(std::abs(axis.y()), 0.1);
+      outline.centreCovariance += reach * reach / 24 * axis * axis.transpose();
+    }
+  }
+}
+
 void vpRimFit::allowForGlow(vpOutlineFit &fit, const Eigen::Vector2d &light)
 {
   static const double sharp = 0.02;   // share of the radius, that half of all edges are known to
@@ -185,8 +198,7 @@ std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, c
     }
     if (fit->outline.shape ==
         vpLampOutline::Shape::quadrilateral) { // a side along the lines may lie in the dark
-      const double gap = vpChordShape::longestGap(roi);
-      fit->outline.centreCovariance(1, 1) += gap * gap / 24;
+      addHiddenSides(fit->outline, vpChordShape::longestGap(roi));
     }
   }
   return fit;

@@ -343,24 +343,6 @@ vpRimFit::Ends endsOf(const std::vector<Run> &outer, const std::vector<Band> &ba
   return ends;
 }
 
-/*!
-  A short side of a lamp that lies wholly in the dark between two stripes may be anywhere there, and the
-  middle with it. \param gap Lines, the longest in the dark.
-*/
-void addHiddenSides(vpLampOutline &outline, double gap)
-{
-  gap += thick; // the first and the last few lines
-  for (size_t side = 0; side < 2 && gap > 0; ++side) {
-    const Eigen::Vector2d along = outline.corners[side + 1] - outline.corners[side],
-                          axis = (outline.corners[(side + 2) % 4] - outline.corners[side + 1]).normalized();
-    const double hidden = gap - std::abs(along.y());
-    if (hidden > 0) {
-      const double reach = hidden / std::max(std::abs(axis.y()), 0.1);
-      outline.centreCovariance += reach * reach / 24 * axis * axis.transpose();
-    }
-  }
-}
-
 //! Middle of the light of some runs, px.
 Eigen::Vector2d middleOf(const std::vector<Run> &runs, const std::vector<Band> &bands, int left)
 {
@@ -465,7 +447,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     }
     Extent extent{regions[chosen], *fit, regions.front()};
     if (extent.fit.outline.shape == vpLampOutline::Shape::quadrilateral) {
-      addHiddenSides(extent.fit.outline, vpChordShape::longestGap(extent.roi));
+      vpRimFit::addHiddenSides(extent.fit.outline, vpChordShape::longestGap(extent.roi) + thick);
     }
     vpRimFit::allowForGlow(extent.fit, middles[chosen]);
     extent.fit.background = light.background();
