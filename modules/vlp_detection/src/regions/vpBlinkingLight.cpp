@@ -7,250 +7,24 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <visp3/vlp_core/vpBrighter.h>
 
 #include "outlines/vpRimFit.h"
 #include "vpChordShape.h"
+#include "vpDemodulation.h"
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const int thick = 3; // lines of a band
-
-//! A few lit lines together: what they have more than the dark lines beside them, sample by sample.
-struct Band {
-  int first, last;                // lines
-  std::vector<float> light, dark; // dark: what the dark lines have
-};
-
-//! Samples of a band that are brighter than some level.
-struct Run {
-  size_t band;
-  int first, last;
-};
-
 cv::Rect grown(const cv::Rect &box, int by)
 {
   return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
 }
 
-//! Sum of each sample over some lines.
-void addLine(const cv::Mat_<unsigned char> &lines, int line, const cv::Rect &window, std::vector<float> &sum)
-{
-  const unsigned char *row = lines[line] + window.x;
-  for (size_t x = 0; x < sum.size(); ++x) {
-    sum[x] += row[x];
-  }
-}
-
-//! Means over a few samples to both sides.
-std::vector<float> smoothed(const std::vector<float> &values, int side)
-{
-  std::vector<float> sums(values.size() + 1, 0), means(values.size());
-  std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
-  const int n = static_cast<int>(values.size());
-  for (int x = 0; x < n; ++x) {
-    const int from = std::max(0, x - side), to = std::min(n, x + side + 1);
-    means[static_cast<size_t>(x)] =
-        (sums[static_cast<size_t>(to)] - sums[static_cast<size_t>(from)]) / static_cast<float>(to - from);
-  }
-  return means;
-}
-
-//! Standard deviation of values, by differences of any two of them.
-double deviationOf(std::vector<float> &differences)
-{
-  static const double perMedian = 0.954, least = 0.1; // of two Gaussian values' difference; grey levels
-  if (differences.empty()) {
-    return least;
-  }
-  const auto middle = differences.begin() + static_cast<long>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(least, *middle / perMedian);
-}
-
-//! Lit and dark lines of a window, and what the former have more.
-class Demodulation
-{
-public:
-  Demodulation(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit, const cv::Rect &window);
-  void drop(const std::vector<cv::Rect> &others);
-  std::vector<Run> runsAbove(double level) const;
-  const std::vector<Band> &bands() const { return m_bands; }
-  double noise() const; // grey levels, standard deviation of a band's light
-  double pixelNoise() const;
-  double background() const { return m_background; } // grey value beside the lamp
-  double brightest() const;
-
-private:
-  void addBands(int first, int last, const std::vector<int> &dark);
-  void dropOthers();
-
-  const cv::Mat_<unsigned char> &m_lines;
-  cv::Rect m_window;
-  std::vector<Band> m_bands;
-  float m_background = 0;
-};
-
-Demodulation::Demodulation(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
-                           const cv::Rect &window)
-    : m_lines(lines), m_window(window)
-{
-  static const float bright = 0.75f, dim = 0.25f; // of the swing of the window's lines
-  const auto begin = lit.begin() + window.y, end = begin + window.height;
-  const auto [least, most] = std::minmax_element(begin, end);
-  const float above = *least + bright * (*most - *least), below = *least + dim * (*most - *least);
-  std::vector<int> dark;
-  for (int line = window.y; line < window.br().y; ++line) {
-    if (lit[static_cast<size_t>(line)] < below) {
-      dark.push_back(line);
-    }
-  }
-  for (int line = window.y; line < window.br().y && !dark.empty(); ++line) {
-    int last = line;
-    while (last < window.br().y && lit[static_cast<size_t>(last)] >= above) {
-      ++last;
-    }
-    if (last > line) {
-      addBands(line, last - 1, dark);
-      line = last;
-    }
-  }
-  dropOthers();
-}
-
-//! What shines on dark lines as well is no light of this lamp.
-void Demodulation::dropOthers()
-{
-  static const float share = 0.4f, least = 3; // of the light; grey levels
-  std::vector<float> all;
-  for (const Band &band : m_bands) {
-    all.insert(all.end(), band.dark.begin(), band.dark.end());
-  }
-  if (all.empty()) {
-    return;
-  }
-  const auto middle = all.begin() + static_cast<long>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
-  m_background = *middle;
-  for (Band &band : m_bands) {
-    for (size_t x = 0; x < band.light.size(); ++x) {
-      if (band.dark[x] - m_background > least + share * band.light[x]) {
-        band.light[x] = 0;
-      }
-    }
-  }
-}
-
-void Demodulation::drop(const std::vector<cv::Rect> &others)
-{
-  for (Band &band : m_bands) {
-    for (const cv::Rect &box : others) {
-      const cv::Rect other = grown(box, 4 + std::max(box.width, box.height) / 16); // its halo, too
-      const int from = std::max(other.x - m_window.x, 0),
-                to = std::min(other.br().x - m_window.x, m_window.width);
-      if (band.last >= other.y && band.first < other.br().y && from < to) {
-        std::fill(band.light.begin() + from, band.light.begin() + to, 0.f);
-      }
-    }
-  }
-}
-
-//! Of a stripe, a few lines each, against the dark lines nearest to the stripe.
-void Demodulation::addBands(int first, int last, const std::vector<int> &dark)
-{
-  static const int side = 2;    // samples
-  static const long enough = 4; // dark lines to each side
-  const auto after = std::upper_bound(dark.begin(), dark.end(), last);
-  const auto from = after - std::min<long>(enough, after - dark.begin()),
-             to = after + std::min<long>(enough, dark.end() - after);
-  std::vector<float> reference(static_cast<size_t>(m_window.width), 0);
-  for (auto line = from; line != to; ++line) {
-    addLine(m_lines, *line, m_window, reference);
-  }
-  const auto references = static_cast<float>(to - from);
-  const int count = std::max(1, (last - first + 1) / thick);
-  for (int k = 0; k < count; ++k) {
-    Band band;
-    band.first = first + (last - first + 1) * k / count;
-    band.last = first + (last - first + 1) * (k + 1) / count - 1;
-    std::vector<float> sum(reference.size(), 0);
-    for (int line = band.first; line <= band.last; ++line) {
-      addLine(m_lines, line, m_window, sum);
-    }
-    const auto of = static_cast<float>(band.last - band.first + 1);
-    for (size_t x = 0; x < sum.size(); ++x) {
-      sum[x] = sum[x] / of - reference[x] / references;
-    }
-    band.light = smoothed(sum, side);
-    band.dark = smoothed(reference, side);
-    for (float &grey : band.dark) {
-      grey /= references;
-    }
-    m_bands.push_back(band);
-  }
-}
-
-//! Of differences beyond the smoothing.
-double Demodulation::noise() const
-{
-  static const size_t apart = 5;
-  std::vector<float> differences;
-  for (const Band &band : m_bands) {
-    for (size_t x = apart; x < band.light.size(); ++x) {
-      differences.push_back(std::abs(band.light[x] - band.light[x - apart]));
-    }
-  }
-  return deviationOf(differences);
-}
-
-double Demodulation::pixelNoise() const
-{
-  std::vector<float> differences;
-  for (const Band &band : m_bands) {
-    const unsigned char *row = m_lines[band.first] + m_window.x;
-    for (int x = 0; x + 1 < m_window.width; ++x) {
-      differences.push_back(static_cast<float>(std::abs(row[x + 1] - row[x])));
-    }
-  }
-  return deviationOf(differences);
-}
-
-double Demodulation::brightest() const
-{
-  float most = 0;
-  for (const Band &band : m_bands) {
-    most = std::max(most, *std::max_element(band.light.begin(), band.light.end()));
-  }
-  return most;
-}
-
-std::vector<Run> Demodulation::runsAbove(double level) const
-{
-  static const int shortest = 3; // samples
-  std::vector<Run> runs;
-  for (size_t k = 0; k < m_bands.size(); ++k) {
-    const std::vector<float> &light = m_bands[k].light;
-    const int n = static_cast<int>(light.size());
-    for (int x = 0; x < n; ++x) {
-      int last = x;
-      while (last < n && light[static_cast<size_t>(last)] > level) {
-        ++last;
-      }
-      if (last - x >= shortest) {
-        runs.push_back({k, x, last - 1});
-      }
-      x = std::max(x, last);
-    }
-  }
-  return runs;
-}
-
 //! Lines, the most that are dark from one band to the next.
-int longestGap(const std::vector<Band> &bands)
+int longestGap(const std::vector<vpLitBand> &bands)
 {
   int gap = 0;
   for (size_t k = 1; k < bands.size(); ++k) {
@@ -260,19 +34,19 @@ int longestGap(const std::vector<Band> &bands)
 }
 
 //! The runs that hang together with a seed: no more than \e reach from each other, px, and a dark gap.
-std::vector<Run> connected(const std::vector<Run> &runs, const std::vector<Band> &bands, const cv::Rect &seed,
-                           int reach)
+std::vector<vpLitRun> connected(const std::vector<vpLitRun> &runs, const std::vector<vpLitBand> &bands,
+                                const cv::Rect &seed, int reach)
 {
   const int lines = reach + longestGap(bands);
-  auto near = [&](const Run &a, const Run &b) {
+  auto near = [&](const vpLitRun &a, const vpLitRun &b) {
     return bands[b.band].first - bands[a.band].last <= lines &&
            bands[a.band].first - bands[b.band].last <= lines && b.first - a.last <= reach &&
            a.first - b.last <= reach;
   };
-  std::vector<Run> found;
+  std::vector<vpLitRun> found;
   std::vector<char> taken(runs.size(), 0);
   for (size_t i = 0; i < runs.size(); ++i) {
-    const Run &run = runs[i];
+    const vpLitRun &run = runs[i];
     const cv::Rect box(run.first, bands[run.band].first, run.last - run.first + 1,
                        bands[run.band].last - bands[run.band].first + 1);
     if ((box & seed).area() > 0) {
@@ -292,13 +66,13 @@ std::vector<Run> connected(const std::vector<Run> &runs, const std::vector<Band>
 }
 
 //! First and last sample of the runs in each band; none: last before first.
-std::vector<Run> outermost(const std::vector<Run> &runs, size_t bands)
+std::vector<vpLitRun> outermost(const std::vector<vpLitRun> &runs, size_t bands)
 {
-  std::vector<Run> outer;
+  std::vector<vpLitRun> outer;
   for (size_t k = 0; k < bands; ++k) {
     outer.push_back({k, std::numeric_limits<int>::max(), -1});
   }
-  for (const Run &run : runs) {
+  for (const vpLitRun &run : runs) {
     outer[run.band].first = std::min(outer[run.band].first, run.first);
     outer[run.band].last = std::max(outer[run.band].last, run.last);
   }
@@ -306,9 +80,9 @@ std::vector<Run> outermost(const std::vector<Run> &runs, size_t bands)
 }
 
 /*!
-  Where a band's light passes half of what it is a little farther in, to a part of a sample: at one level for
-  all, bright ends would lie farther out than dim ones.
-  \param from Its first sample above the level. \param step 1: the band goes on to the right; -1: to the left.
+  Where a band's light passes half of what it is a little farther in, to a part of a sample: at one level
+  for all, bright ends would lie farther out than dim ones. \param from Its first sample above the level.
+  \param step 1: the band goes on to the right; -1: to the left.
 */
 float crossingOf(const std::vector<float> &light, int from, int to, int step, double level)
 {
@@ -327,11 +101,11 @@ float crossingOf(const std::vector<float> &light, int from, int to, int step, do
   return static_cast<float>(x - step * std::clamp(above / std::max(above + below, 1e-3), 0.0, 1.0));
 }
 
-vpRimFit::Ends endsOf(const std::vector<Run> &outer, const std::vector<Band> &bands, double level,
+vpRimFit::Ends endsOf(const std::vector<vpLitRun> &outer, const std::vector<vpLitBand> &bands, double level,
                       const cv::Point &origin)
 {
   vpRimFit::Ends ends;
-  for (const Run &run : outer) {
+  for (const vpLitRun &run : outer) {
     const std::vector<float> &light = bands[run.band].light;
     if (run.first > 0 && run.last >= run.first && run.last + 1 < static_cast<int>(light.size())) {
       const auto line = static_cast<float>(0.5 * (bands[run.band].first + bands[run.band].last)),
@@ -344,12 +118,12 @@ vpRimFit::Ends endsOf(const std::vector<Run> &outer, const std::vector<Band> &ba
 }
 
 //! Middle of the light of some runs, px.
-Eigen::Vector2d middleOf(const std::vector<Run> &runs, const std::vector<Band> &bands, int left)
+Eigen::Vector2d middleOf(const std::vector<vpLitRun> &runs, const std::vector<vpLitBand> &bands, int left)
 {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double weight = 0;
-  for (const Run &run : runs) {
-    const Band &band = bands[run.band];
+  for (const vpLitRun &run : runs) {
+    const vpLitBand &band = bands[run.band];
     for (int x = run.first; x <= run.last; ++x) {
       const double light = band.light[static_cast<size_t>(x)] * (band.last - band.first + 1);
       sum += light * Eigen::Vector2d(left + x, 0.5 * (band.first + band.last));
@@ -359,11 +133,12 @@ Eigen::Vector2d middleOf(const std::vector<Run> &runs, const std::vector<Band> &
   return sum / std::max(weight, 1e-9);
 }
 
-vpLedRoi regionOf(const std::vector<Run> &outer, const std::vector<Band> &bands, int left, double level)
+vpLedRoi regionOf(const std::vector<vpLitRun> &outer, const std::vector<vpLitBand> &bands, int left,
+                  double level)
 {
   vpLedRoi roi;
   roi.level = level;
-  for (const Run &run : outer) {
+  for (const vpLitRun &run : outer) {
     if (run.last < run.first) {
       continue;
     }
@@ -416,7 +191,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
   cv::Rect box = seed.box;
   for (int round = 0; round < rounds; ++round) {
     const cv::Rect window = grown(box, size) & picture;
-    Demodulation light(lines, lit, window);
+    vpDemodulation light(lines, lit, window);
     light.drop(others);
     if (light.bands().empty()) {
       return std::nullopt;
@@ -426,9 +201,9 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     std::vector<Eigen::Vector2d> middles;
     for (double level = std::max(least, sigmas * light.noise()); level < most * light.brightest();
          level *= vpRimFit::levelRatio) {
-      const std::vector<Run> runs =
+      const std::vector<vpLitRun> runs =
           connected(light.runsAbove(level), light.bands(), seed.box - cv::Point(window.x, 0), reach);
-      const std::vector<Run> outer = outermost(runs, light.bands().size());
+      const std::vector<vpLitRun> outer = outermost(runs, light.bands().size());
       middles.push_back(middleOf(runs, light.bands(), window.x));
       levels.push_back(endsOf(outer, light.bands(), level, window.tl()));
       regions.push_back(regionOf(outer, light.bands(), window.x, seed.level));
@@ -447,7 +222,8 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     }
     Extent extent{regions[chosen], *fit, regions.front()};
     if (extent.fit.outline.shape == vpLampOutline::Shape::quadrilateral) {
-      vpRimFit::addHiddenSides(extent.fit.outline, vpChordShape::longestGap(extent.roi) + thick);
+      vpRimFit::addHiddenSides(extent.fit.outline,
+                               vpChordShape::longestGap(extent.roi) + vpDemodulation::thick);
     }
     vpRimFit::allowForGlow(extent.fit, middles[chosen]);
     extent.fit.background = light.background();

@@ -10,24 +10,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
+
+#include "vpTransposed.h"
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! An outline of u and v as one of samples and lines of a transposed picture.
-vpLampOutline transposed(vpLampOutline outline)
-{
-  std::swap(outline.centre.x(), outline.centre.y());
-  outline.angle = std::remainder(M_PI / 2 - outline.angle, M_PI);
-  for (Eigen::Vector2d &corner : outline.corners) {
-    std::swap(corner.x(), corner.y());
-  }
-  return outline;
-}
-
 //! The lines and samples that an outline holds, clipped to the picture.
 cv::Rect boxOf(const vpLampOutline &outline, cv::Size picture)
 {
@@ -89,7 +79,7 @@ vpStripeProfile vpLedDetector::profile(const vpImage<unsigned char> &I, const vp
   check(I);
   const vpLinePicture picture(I, m_rig.shutter.alongColumns());
   vpOutlineFit fit;
-  fit.outline = picture.transposed ? transposed(lamp.outline) : lamp.outline;
+  fit.outline = picture.transposed ? vpTransposed(lamp.outline) : lamp.outline;
   fit.blur = lamp.blur;
   fit.noise = lamp.noise;
   vpLedRoi roi;

@@ -16,24 +16,13 @@
 #include "stripes/vpLampGlance.h"
 #include "stripes/vpSteadyLight.h"
 #include "vpSeenRegion.h"
+#include "vpTransposed.h"
 #include <visp3/vlp_core/vpBrighter.h>
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-
-//! Takes an outline from samples and lines of a transposed picture back to u and v.
-vpLampOutline swapped(vpLampOutline outline)
-{
-  std::swap(outline.centre.x(), outline.centre.y());
-  outline.angle = std::remainder(M_PI / 2 - outline.angle, M_PI);
-  for (Eigen::Vector2d &corner : outline.corners) {
-    std::swap(corner.x(), corner.y());
-  }
-  std::swap(outline.centreCovariance(0, 0), outline.centreCovariance(1, 1));
-  return outline;
-}
 
 //! A pixel at most one outside of a picture, which may be far from where the window ends.
 int near(double x, int pixels)
@@ -236,7 +225,7 @@ bool vpLedDetector::glance(const vpImage<unsigned char> &I, vpLampObservation &l
 //! Where the lamp is, by its outline.
 void vpLedDetector::place(vpLampObservation &lamp, const vpOutlineFit &fit, bool transposed) const
 {
-  lamp.outline = transposed ? swapped(fit.outline) : fit.outline;
+  lamp.outline = transposed ? vpTransposed(fit.outline) : fit.outline;
   lamp.point = lamp.outline.middle(m_rig.camera, m_rig.verticalInCamera());
   lamp.covariance = lamp.outline.centreCovariance;
   lamp.time = m_timing.middleAt(transposed ? lamp.point.x() : lamp.point.y());

@@ -1,0 +1,54 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpDemodulation_h
+#define vpDemodulation_h
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <visp3/vlp_core/vpVlpNamespace.h>
+
+BEGIN_VISP_NAMESPACE
+
+//! A few lit lines together: what they have more than the dark lines beside them, sample by sample.
+struct vpLitBand {
+  int first, last;                // lines
+  std::vector<float> light, dark; // dark: what the dark lines have
+};
+
+//! Samples of a band that are brighter than some level.
+struct vpLitRun {
+  size_t band;
+  int first, last;
+};
+
+//! Lit and dark lines of a window, and what the former have more.
+class vpDemodulation
+{
+public:
+  static constexpr int thick = 3; // lines of a band, most
+
+  vpDemodulation(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit, const cv::Rect &window);
+  void drop(const std::vector<cv::Rect> &others);
+  std::vector<vpLitRun> runsAbove(double level) const;
+  const std::vector<vpLitBand> &bands() const { return m_bands; }
+  double noise() const; // grey levels, standard deviation of a band's light
+  double pixelNoise() const;
+  double background() const { return m_background; } // grey value beside the lamp
+  double brightest() const;
+
+private:
+  void addBands(int first, int last, const std::vector<int> &dark);
+  void dropOthers();
+
+  const cv::Mat_<unsigned char> &m_lines;
+  cv::Rect m_window;
+  std::vector<vpLitBand> m_bands;
+  float m_background = 0;
+};
+
+END_VISP_NAMESPACE
+
+#endif
