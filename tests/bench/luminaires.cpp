@@ -73,44 +73,54 @@ double inSigmas(const vpLampObservation &seen, const vpHalfRealLamp &lamp)
   return std::sqrt(off.dot(covariance.inverse() * off));
 }
 
+//! The lamp that an observation is of, the nearest where it may be several; -1: none.
+int lampOf(const vpLampObservation &seen, const std::vector<vpHalfRealLamp> &lamps)
+{
+  int nearest = -1;
+  for (size_t i = 0; i < lamps.size(); ++i) {
+    auto away = [&seen, &lamps](size_t lamp) { return (seen.point - lamps[lamp].middle).norm(); };
+    if (isOf(seen, lamps[i]) && (nearest < 0 || away(i) < away(static_cast<size_t>(nearest)))) {
+      nearest = static_cast<int>(i);
+    }
+  }
+  return nearest;
+}
+
 //! A lamp counts once as right or missing; each id that is not its own counts as wrong.
 Outcome judged(const vpHalfRealTrial &trial, const std::vector<vpLampObservation> &observations)
 {
   Outcome outcome;
-  std::vector<bool> known(observations.size(), false);
-  for (const vpHalfRealLamp &lamp : trial.picture.lamps) {
-    ++outcome.lamps;
-    bool right = false;
-    std::string remark = "no region";
-    for (size_t i = 0; i < observations.size(); ++i) {
-      const vpLampObservation &seen = observations[i];
-      if (known[i] || !isOf(seen, lamp)) {
-        continue;
-      }
-      if (seen.id.empty()) {
-        remark = seen.remark;
-        continue;
-      }
-      known[i] = true;
-      outcome.wrong += seen.id != lamp.id;
-      if (seen.id == lamp.id && !right) {
-        right = true;
-        outcome.errors.push_back((seen.point - lamp.middle).norm());
-        outcome.shares.push_back(inSigmas(seen, lamp));
-      }
+  const std::vector<vpHalfRealLamp> &lamps = trial.picture.lamps;
+  std::vector<bool> right(lamps.size(), false);
+  std::vector<std::string> remarks(lamps.size(), "no region");
+  for (const vpLampObservation &seen : observations) {
+    const int of = lampOf(seen, lamps);
+    if (of < 0) {
+      outcome.wrong += !seen.id.empty();
+      continue;
     }
-    outcome.right += right;
-    if (!right) {
-      ++outcome.missing[remark];
+    const auto which = static_cast<size_t>(of);
+    if (seen.id.empty()) {
+      remarks[which] = seen.remark;
+    } else if (seen.id != lamps[which].id) {
+      ++outcome.wrong;
+    } else if (!right[which]) {
+      right[which] = true;
+      outcome.errors.push_back((seen.point - lamps[which].middle).norm());
+      outcome.shares.push_back(inSigmas(seen, lamps[which]));
     }
   }
-  for (size_t i = 0; i < observations.size(); ++i) {
-    outcome.wrong += !known[i] && !observations[i].id.empty();
+  outcome.lamps = static_cast<int>(lamps.size());
+  for (size_t i = 0; i < lamps.size(); ++i) {
+    outcome.right += right[i];
+    if (!right[i]) {
+      ++outcome.missing[remarks[i]];
+    }
   }
   return outcome;
 }
 
-//! What vp-locate needs to show the trial, named by the family and a number.
+//! What vlp-locate needs to show the trial, named by the family and a number.
 void keep(const vpHalfRealTrial &trial, const vpImage<unsigned char> &I, const std::string &name)
 {
   trial.rig.save(name + "-rig.yaml");
