@@ -88,8 +88,8 @@ struct VISP_EXPORT vpStripeFeatures {
   std::vector<vpDutySlice> alongDuty;
   double phaseDifference = std::numeric_limits<double>::quiet_NaN(); // periods, twoPulse only
   double phaseDifferenceSigma = std::numeric_limits<double>::quiet_NaN();
-  double phase = std::numeric_limits<double>::quiet_NaN(); // periods, from the start of a pulse (twoPulse: the
-                                                           // first) to that of the frame; not of a word
+  double phase = std::numeric_limits<double>::quiet_NaN(); // periods, from the start of a pulse (twoPulse:
+                                                           // the first) to that of the frame; not of a word
   double exposure = std::numeric_limits<double>::quiet_NaN(); // s, as soft as the stripes' edges are
   double exposureSigma = std::numeric_limits<double>::quiet_NaN();
   /*!
