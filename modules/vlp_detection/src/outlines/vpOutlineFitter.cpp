@@ -107,18 +107,7 @@ bool isSharp(const vpOutlineFit &fit)
 */
 void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  double weight = 0;
-  for (const vpLedChord &chord : roi.chords) {
-    for (int x = chord.first; x <= chord.last; ++x) {
-      const double light = std::max(0.0, lines(chord.line, x) - roi.level);
-      sum += light * Eigen::Vector2d(x, chord.line);
-      weight += light;
-    }
-  }
-  if (weight > 0) {
-    outline.centre = sum / weight;
-  }
+  outline.centre = vpRimFit::middleOfLight(lines, roi).value_or(outline.centre);
   static const Eigen::Vector2d doubt(0.04, 0.06); // share of the radius, standard deviation
   outline.centreCovariance = (0.5 * outline.diameter() * doubt).cwiseAbs2().asDiagonal();
 }

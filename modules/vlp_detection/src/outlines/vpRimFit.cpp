@@ -139,6 +139,21 @@ std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels
   return best;
 }
 
+std::optional<Eigen::Vector2d> vpRimFit::middleOfLight(const cv::Mat_<unsigned char> &lines,
+                                                       const vpLedRoi &roi)
+{
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weight = 0;
+  for (const vpLedChord &chord : roi.chords) {
+    for (int x = chord.first; x <= chord.last; ++x) {
+      const double light = std::max(0.0, lines(chord.line, x) - roi.level);
+      sum += light * Eigen::Vector2d(x, chord.line);
+      weight += light;
+    }
+  }
+  return weight > 0 ? std::make_optional<Eigen::Vector2d>(sum / weight) : std::nullopt;
+}
+
 void vpRimFit::addHiddenSides(vpLampOutline &outline, double gap)
 {
   for (size_t side = 0; side < 2 && gap > 0; ++side) {
@@ -184,18 +199,7 @@ std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, c
   std::optional<vpOutlineFit> fit = mostStable(levels, roi.box, chosen);
   if (fit) {
     fit->background = background;
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    double weight = 0;
-    for (const vpLedChord &chord : roi.chords) {
-      for (int x = chord.first; x <= chord.last; ++x) {
-        const double light = std::max(0.0, lines(chord.line, x) - roi.level);
-        sum += light * Eigen::Vector2d(x, chord.line);
-        weight += light;
-      }
-    }
-    if (weight > 0) {
-      allowForGlow(*fit, sum / weight);
-    }
+    allowForGlow(*fit, middleOfLight(lines, roi).value_or(fit->outline.centre));
     if (fit->outline.shape ==
         vpLampOutline::Shape::quadrilateral) { // a side along the lines may lie in the dark
       addHiddenSides(fit->outline, vpChordShape::longestGap(roi));

@@ -40,9 +40,12 @@ std::optional<vpOutlineFit> mostStable(const std::vector<Ends> &levels, const cv
 */
 void allowForGlow(vpOutlineFit &fit, const Eigen::Vector2d &light);
 
+//! Middle of a region's light above its level, px; nothing where it has none.
+std::optional<Eigen::Vector2d> middleOfLight(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi);
+
 /*!
-  A side of a quadrilateral of which more than half lies in the dark between two stripes may be anywhere there,
-  and so may its opposite: the middle is as uncertain. \param gap Lines, the longest in the dark.
+  A side of a quadrilateral of which more than half lies in the dark between two stripes may be anywhere
+  there, and so may its opposite: the middle is as uncertain. \param gap Lines, the longest in the dark.
 */
 void addHiddenSides(vpLampOutline &outline, double gap);
 

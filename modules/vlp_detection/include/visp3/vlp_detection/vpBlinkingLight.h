@@ -34,8 +34,8 @@ public:
   /*!
     \param lit Of each line of the picture, the light of the lamp as a share of its most. \param seed A part
     of the lamp. \param others Boxes of other lamps, whose light does not count. \return The light that blinks
-    like that and hangs together with the seed, dark patches of a quarter of the seed's size apart; nothing where that
-    has no shape of a lamp.
+    like that and hangs together with the seed, dark patches of a quarter of the seed's size apart; nothing
+    where that has no shape of a lamp.
   */
   /*!
     How much of a region's light keeps to the lines on which the lamp is lit: 1 all of what does blink so, 0

@@ -37,11 +37,11 @@ struct VISP_EXPORT vpStripeProfile {
 
   /*!
     The same of a luminaire of any emission pattern: a pixel is S(u, v) m(v), S any positive pattern, m the
-    modulation. Strips of a few columns inside the outline, or in the region's box where that has none, tell both
-    by turns: S of each strip as a random walk along the lines, m of each line from what all other lines say of
-    S there. Patches, glare and clipped columns are outliers of a few strips. Where all strips change alike
-    while the lamp is lit, nothing tells S from m, and m has it. Less certain than along() where the emitter is
-    even. \return As if a lit line had 100 grey levels; lines that tell nothing are left out.
+    modulation. Strips of a few columns inside the outline, or in the region's box where that has none, tell
+    both by turns: S of each strip as a random walk along the lines, m of each line from what all other lines
+    say of S there. Patches, glare and clipped columns are outliers of a few strips. Where all strips change
+    alike while the lamp is lit, nothing tells S from m, and m has it. Less certain than along() where the
+    emitter is even. \return As if a lit line had 100 grey levels; lines that tell nothing are left out.
   */
   static vpStripeProfile agreedByColumns(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                          const vpOutlineFit &fit, const vpLedRoi &roi);
