@@ -57,7 +57,7 @@ bool blinksSomehow(const vpLampObservation &lamp)
   return lamp.features.signal != vpStripeFeatures::Signal::unmodulated && !tells(lamp);
 }
 
-//! Whether an outline is that of a whole lamp beyond doubt: no part of a lamp is an evenly lit ellipse.
+//! Whether an outline is that of a whole lamp: no part of a lamp is an evenly lit ellipse.
 bool isWhole(const vpOutlineFit &fit)
 {
   return fit.sound && fit.outline.shape == vpLampOutline::Shape::ellipse;
