@@ -66,19 +66,26 @@ std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim, const cv::Rect
   if (rim.size() < fewest) {
     return std::nullopt;
   }
-  const double ellipse = vpChordShape::ellipseMisfit(rim, box), sides = vpChordShape::rectangleMisfit(rim);
+  static const double independent = 8; // ends, of as many as there are
+  const double ellipse = vpChordShape::ellipseMisfit(rim, box), sides = vpChordShape::rectangleMisfit(rim),
+               worse = std::max(sides, ellipse) / std::max(std::min(sides, ellipse), 0.1);
+  const double otherShape = 1 / (1 + std::pow(worse, independent));
   if (sides < ellipse) {
     const vpQuadrilateralModel model = vpQuadrilateralModel::from(rim);
-    return Shape{model.outline(Eigen::MatrixXd::Zero(vpQuadrilateralModel::parameters,
-                                                     vpQuadrilateralModel::parameters)),
-                 sides};
+    Shape shape{model.outline(Eigen::MatrixXd::Zero(vpQuadrilateralModel::parameters,
+                                                    vpQuadrilateralModel::parameters)),
+                sides};
+    shape.outline.otherShape = otherShape;
+    return shape;
   }
   const std::optional<vpEllipseModel> model = vpEllipseModel::through(rim);
   if (!model) {
     return std::nullopt;
   }
-  return Shape{model->outline(Eigen::MatrixXd::Zero(vpEllipseModel::parameters, vpEllipseModel::parameters)),
-               ellipse};
+  Shape shape{model->outline(Eigen::MatrixXd::Zero(vpEllipseModel::parameters, vpEllipseModel::parameters)),
+              ellipse};
+  shape.outline.otherShape = otherShape;
+  return shape;
 }
 
 //! Median of the samples a little outside the ends.

@@ -215,6 +215,9 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
       box |= regions.front().box;
       continue;
     }
+    if (isCut(regions.front(), picture)) {
+      return std::nullopt; // what is seen of it says nothing of its middle
+    }
     size_t chosen = 0;
     const std::optional<vpOutlineFit> fit = vpRimFit::mostStable(levels, regions.front().box, chosen);
     if (!fit) {
@@ -228,8 +231,6 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     vpRimFit::allowForGlow(extent.fit, middles[chosen]);
     extent.fit.background = light.background();
     extent.fit.noise = light.pixelNoise();
-    extent.roi.cutAcross = extent.roi.box.x <= 0 || extent.roi.box.br().x >= lines.cols;
-    extent.roi.cutAlong = extent.roi.box.y <= 0 || extent.roi.box.br().y >= lines.rows;
     return extent;
   }
   return std::nullopt;

@@ -12,6 +12,7 @@
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpRect.h>
 #include <visp3/vlp_identification/vpLedIdEvidence.h>
+#include <visp3/vlp_identification/vpLitShare.h>
 
 #include "stripes/vpLampGlance.h"
 #include "stripes/vpSteadyLight.h"
@@ -295,20 +296,29 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   return vpLedIdEvidence::tells(other) && (!tells || other.misfit < features.misfit) ? other : features;
 }
 
-//! What the lines' means hide the columns may agree on. Nothing of fewer than three stripes, or of a
-//! frequency that is hardly known: any texture has shades that some columns agree on.
+/*!
+  What the lines' means hide the columns may agree on. Any texture has shades that some columns agree on: a
+  lamp has three stripes or more, of a frequency that is well known, and is as dark between them as its wave
+  says.
+*/
 vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, const vpOutlineFit &fit,
                                               const vpLedRoi &roi) const
 {
   static const unsigned int few = 3;
-  static const double vague = 0.01; // share of the frequency
+  static const double vague = 0.01, unlike = 0.2; // share of the frequency; depth
   vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
   agreed.exposure = m_exposure.exposure();
   agreed.logExposureSigma = m_exposure.logSigma();
   const vpStripeFeatures features = stripeAnalyzer.analyze(agreed);
-  const bool hardly = features.frequencySigma > vague * features.frequency;
-  return features.stripes >= few && !(vpLedIdEvidence::tells(features) && hardly) ? features
-                                                                                  : vpStripeFeatures();
+  if (features.stripes < few || !vpLedIdEvidence::tells(features) ||
+      features.signal == vpStripeFeatures::Signal::coded) {
+    return features.stripes < few ? vpStripeFeatures() : features;
+  }
+  vpStripeProfile wave;
+  wave.light = vpLitShareOf(features, agreed.time);
+  const bool hardly = features.frequencySigma > vague * features.frequency ||
+                      std::abs(features.modulation - wave.depth()) > unlike;
+  return hardly ? vpStripeFeatures() : features;
 }
 
 /*!

@@ -133,16 +133,6 @@ void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Fou
   }
 }
 
-//! Depth of the stripes, 0 to 1.
-double depthOf(const vpStripeProfile &profile)
-{
-  std::vector<double> sorted = profile.light;
-  std::sort(sorted.begin(), sorted.end());
-  const double low = std::max(0.0, sorted[sorted.size() / 20]);
-  const double high = sorted[sorted.size() - 1 - sorted.size() / 20];
-  return high > 0 ? std::clamp((high - low) / (high + low), 0.0, 1.0) : 0;
-}
-
 //! Where stripes are too few or too blurred for what was fitted to mean much.
 void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edgesAgree)
 {
@@ -186,7 +176,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   const std::vector<size_t> peaks = vpStripeStarts::peaks(profile);
   features.stripes = static_cast<unsigned int>(peaks.size());
-  features.modulation = depthOf(profile);
+  features.modulation = profile.depth();
 
   const int order = envelopeOrderOf(profile, peaks);
   const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);

@@ -110,6 +110,18 @@ double subtractDarkest(std::vector<double> &light)
 
 } // namespace
 
+double vpStripeProfile::depth() const
+{
+  if (light.empty()) {
+    return 0;
+  }
+  std::vector<double> sorted = light;
+  std::sort(sorted.begin(), sorted.end());
+  const double low = std::max(0.0, sorted[sorted.size() / 20]);
+  const double high = sorted[sorted.size() - 1 - sorted.size() / 20];
+  return high > 0 ? std::clamp((high - low) / (high + low), 0.0, 1.0) : 0;
+}
+
 vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                        const vpOutlineFit &fit, const vpLedRoi &roi)
 {

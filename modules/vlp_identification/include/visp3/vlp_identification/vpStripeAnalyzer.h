@@ -25,6 +25,9 @@ struct VISP_EXPORT vpStripeProfile {
   double white = std::numeric_limits<double>::infinity(); // grey levels of light where the grey scale ends
   double agreement = 1; // correlation, over the lines, of their left and right halves
 
+  //! Of the stripes, 0 to 1, but for the darkest and the brightest twentieth of the lines; 0 of no lines.
+  double depth() const;
+
   /*!
     Profile inside an outline (in samples and lines, as the fitter gives it): the mean of each line's samples.
     However an emitter's light is spread, it makes the stripes' envelope, which the waveform's fit finds.
