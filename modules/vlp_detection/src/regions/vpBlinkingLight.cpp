@@ -215,13 +215,10 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
       box |= regions.front().box;
       continue;
     }
-    if (isCut(regions.front(), picture)) {
-      return std::nullopt; // what is seen of it says nothing of its middle
-    }
     size_t chosen = 0;
     const std::optional<vpOutlineFit> fit = vpRimFit::mostStable(levels, regions.front().box, chosen);
-    if (!fit) {
-      return std::nullopt;
+    if (!fit || isCut(regions[chosen], picture)) {
+      return std::nullopt; // what is seen of a lamp that the border cuts says nothing of its middle
     }
     Extent extent{regions[chosen], *fit, regions.front()};
     if (extent.fit.outline.shape == vpLampOutline::Shape::quadrilateral) {
