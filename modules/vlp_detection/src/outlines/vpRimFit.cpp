@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include <opencv2/imgproc.hpp>
+
 #include <visp3/vlp_core/vpBrighter.h>
 
 #include "regions/vpChordHull.h"
@@ -53,21 +55,22 @@ std::vector<cv::Point2f> endsAt(const cv::Mat_<unsigned char> &lines, const vpLe
 }
 
 //! Of the ends, those that are not far inside their hull.
-std::vector<cv::Point2f> rimOf(const std::vector<cv::Point2f> &ends, const cv::Rect &box)
+std::vector<cv::Point2f> rimOf(const std::vector<cv::Point2f> &ends)
 {
   static const double share = 0.02, least = 1; // of the size; px
+  const cv::Rect box = cv::boundingRect(ends);
   return vpChordHull::nearIt(ends, vpChordHull::of(ends),
                              static_cast<float>(std::max(least, share * std::max(box.width, box.height))));
 }
 
-std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim, const cv::Rect &box)
+std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim)
 {
   static const size_t fewest = 8;
   if (rim.size() < fewest) {
     return std::nullopt;
   }
   static const double independent = 8; // ends, of as many as there are
-  const double ellipse = vpChordShape::ellipseMisfit(rim, box), sides = vpChordShape::rectangleMisfit(rim),
+  const double ellipse = vpChordShape::ellipseMisfit(rim, cv::boundingRect(rim)), sides = vpChordShape::rectangleMisfit(rim),
                worse = std::max(sides, ellipse) / std::max(std::min(sides, ellipse), 0.1);
   const double otherShape = 1 / (1 + std::pow(worse, independent));
   if (sides < ellipse) {
@@ -109,15 +112,14 @@ double backgroundOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 }
 } // namespace
 
-std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels, const cv::Rect &box,
-                                                 size_t &chosen)
+std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels, size_t &chosen)
 {
   static const double far = 0.06, px = 0.5; // misfit, share of the radius, and what samples add
   static const double independent = 2;      // ends, of as many as there are
   static const double halving = std::log(2) / std::log(levelRatio);
   std::vector<std::optional<Shape>> shapes;
   for (const Ends &ends : levels) {
-    shapes.push_back(nearest(rimOf(ends, box), box));
+    shapes.push_back(nearest(rimOf(ends)));
   }
   double least = std::numeric_limits<double>::infinity();
   std::optional<vpOutlineFit> best;
@@ -203,7 +205,7 @@ std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, c
     levels.push_back(endsAt(lines, roi, background + light));
   }
   size_t chosen = 0;
-  std::optional<vpOutlineFit> fit = mostStable(levels, roi.box, chosen);
+  std::optional<vpOutlineFit> fit = mostStable(levels, chosen);
   if (fit) {
     fit->background = background;
     allowForGlow(*fit, middleOfLight(lines, roi).value_or(fit->outline.centre));

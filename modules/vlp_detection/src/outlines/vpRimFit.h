@@ -31,7 +31,7 @@ constexpr double levelRatio = 1.25;
 
 //! \param levels Ends at each level, the lowest first. \param[out] chosen Which one it is. \return Nothing
 //! where neither shape comes near to the ends of any.
-std::optional<vpOutlineFit> mostStable(const std::vector<Ends> &levels, const cv::Rect &box, size_t &chosen);
+std::optional<vpOutlineFit> mostStable(const std::vector<Ends> &levels, size_t &chosen);
 
 /*!
   An edge that is no sharper than a lens makes it may be that of a glow, or of a housing that the lamp lights:

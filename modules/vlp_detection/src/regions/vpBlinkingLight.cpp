@@ -216,7 +216,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
       continue;
     }
     size_t chosen = 0;
-    const std::optional<vpOutlineFit> fit = vpRimFit::mostStable(levels, regions.front().box, chosen);
+    const std::optional<vpOutlineFit> fit = vpRimFit::mostStable(levels, chosen);
     if (!fit || isCut(regions[chosen], picture)) {
       return std::nullopt; // what is seen of a lamp that the border cuts says nothing of its middle
     }

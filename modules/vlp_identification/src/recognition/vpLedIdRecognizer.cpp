@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -149,18 +150,16 @@ struct vpLedIdRecognizer::Sight {
 void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const std::vector<double> &weights,
                                      double gate)
 {
-  double mean = 0, variance = 0;
-  for (size_t k = 0; k < errors.size(); ++k) {
-    mean += weights[k] * errors[k];
-    variance += weights[k] * square(errors[k]);
-  }
-  variance = std::max(0.0, variance - square(mean));
+  const double most = *std::max_element(weights.begin(), weights.end());
   double sum = unknown;
   for (Candidate &candidate : candidates) {
-    const double expected = candidate.frequency * (1 + mean);
-    const double clocks = std::hypot(candidate.clock, candidate.frequency * std::sqrt(variance));
-    candidate.fits =
-        candidate.fits && std::abs(candidate.seen - expected) < std::hypot(candidate.reach, gate * clocks);
+    const double reach = std::hypot(candidate.reach, gate * candidate.clock);
+    double least = std::numeric_limits<double>::infinity(); // gates^2, from the nearest likely row time
+    for (size_t k = 0; k < errors.size(); ++k) {
+      const double off = candidate.seen - candidate.frequency * (1 + errors[k]);
+      least = std::min(least, square(off / reach) - 2 * std::log(weights[k] / most) / square(gate));
+    }
+    candidate.fits = candidate.fits && least < 1;
     candidate.probability = 0;
     for (size_t k = 0; k < errors.size(); ++k) {
       candidate.probability += weights[k] * candidate.weight * density(candidate, errors[k]);

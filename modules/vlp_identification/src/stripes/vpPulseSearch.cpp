@@ -91,14 +91,11 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse()
         if (fit.misfit() > allExplained) {
           fit.leaveGap();
         }
-        if (fit.misfit() < allExplained) {
-          return fit;
-        }
         keepBetter(best, std::move(fit));
       }
     }
   }
-  if (m_byPulses) {
+  if (m_byPulses || (best && best->misfit() < allExplained)) {
     return best;
   }
   for (const vpStripeStarts::Sinusoid &candidate : candidates()) {
