@@ -5,7 +5,9 @@
 #include <visp3/vlp_identification/vpExposureEvidence.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "waveform/vpStripeLimits.h"
 
@@ -15,7 +17,8 @@ namespace
 {
 const double sigmas = 5;      // standard deviations of the stated exposure that are looked at
 const double step = 0.04;     // of the logarithm
-const double softened = 0.15; // of the logarithm: tone curve and blur change what a lamp shows of it
+// Of the logarithm, by which tone curve and blur change what a lamp shows of it: hardly or notably.
+const std::array<double, 2> softened{0.03, 0.15};
 
 double square(double x)
 {
@@ -28,62 +31,77 @@ vpExposureEvidence::vpExposureEvidence(double stated, double logSigma)
 {
   if (logSigma > step) {
     const int side = static_cast<int>(std::ceil(sigmas * logSigma / step));
-    for (int i = -side; i <= side; ++i) {
-      m_logPosterior.push_back(-0.5 * square(i * step / logSigma));
+    for (std::vector<double> &log : m_logPosterior) {
+      for (int i = -side; i <= side; ++i) {
+        log.push_back(-0.5 * square(i * step / logSigma));
+      }
     }
   }
 }
 
-void vpExposureEvidence::add(const vpStripeFeatures &seen)
+void vpExposureEvidence::add(const vpStripeFeatures &seen, const vpExposureEvidence &before)
 {
-  if (m_logPosterior.empty() || seen.signal != vpStripeFeatures::Signal::pwm || !(seen.exposure > 0) ||
+  if (m_logPosterior.front().empty() || seen.signal != vpStripeFeatures::Signal::pwm || !(seen.exposure > 0) ||
       !(seen.exposureSigma > 0) || !(seen.frequencySigma < seen.frequency)) {
     return;
   }
-  static const double saysNothing = 0.05; // share of the lamps
-  const double width = seen.exposure * seen.frequency,
-               sigma = std::hypot(softened, seen.exposureSigma / seen.exposure);
-  const double fitted = std::log(seen.exposure / m_stated),
-               other = std::log(seen.duty / seen.frequency / m_stated);
+  static const double saysNothing = 0.05, mostKnown = 0.95; // shares of the lamps; of what was read
+  const double width = seen.exposure * seen.frequency;
+  // What was known before is in what was read, and is to count once.
+  const double variance = square(seen.exposureSigma / seen.exposure),
+               share = std::min(variance / square(before.m_logSigma), mostKnown), // that was known before
+      alone = variance / (1 - share), known = std::log(before.m_exposure / m_stated);
+  auto byStripes = [&](double exposure) {
+    return (std::log(exposure / m_stated) - share * known) / (1 - share);
+  };
+  const double fitted = byStripes(seen.exposure), other = byStripes(seen.duty / seen.frequency);
   const double first = std::exp(-0.5 * vpStripeLimits::unlikely(seen.duty)),
                second = std::exp(-0.5 * vpStripeLimits::unlikely(width));
-  const double uniform = 1 / (step * static_cast<double>(m_logPosterior.size()));
-  const int side = static_cast<int>(m_logPosterior.size() / 2);
-  for (int i = -side; i <= side; ++i) {
-    auto bell = [&](double mean) {
-      return std::exp(-0.5 * square((i * step - mean) / sigma)) / (std::sqrt(2 * M_PI) * sigma);
-    };
-    const double both = (first * bell(fitted) + second * bell(other)) / std::max(first + second, 1e-12);
-    m_logPosterior[static_cast<size_t>(i + side)] +=
-        std::log((1 - saysNothing) * both + saysNothing * uniform);
+  const double uniform = 1 / (step * static_cast<double>(m_logPosterior.front().size()));
+  const int side = static_cast<int>(m_logPosterior.front().size() / 2);
+  for (size_t k = 0; k < softened.size(); ++k) {
+    const double sigma = std::sqrt(square(softened[k]) + alone);
+    for (int i = -side; i <= side; ++i) {
+      auto bell = [&](double mean) {
+        return std::exp(-0.5 * square((i * step - mean) / sigma)) / (std::sqrt(2 * M_PI) * sigma);
+      };
+      const double both = (first * bell(fitted) + second * bell(other)) / std::max(first + second, 1e-12);
+      m_logPosterior[k][static_cast<size_t>(i + side)] +=
+          std::log((1 - saysNothing) * both + saysNothing * uniform);
+    }
   }
   summarise();
 }
 
 void vpExposureEvidence::summarise()
 {
-  const double most = *std::max_element(m_logPosterior.begin(), m_logPosterior.end());
-  const int side = static_cast<int>(m_logPosterior.size() / 2);
+  double most = -std::numeric_limits<double>::infinity();
+  for (const std::vector<double> &log : m_logPosterior) {
+    most = std::max(most, *std::max_element(log.begin(), log.end()));
+  }
+  const int side = static_cast<int>(m_logPosterior.front().size() / 2);
   double sum = 0, first = 0, second = 0;
-  for (int i = -side; i <= side; ++i) {
-    double &log = m_logPosterior[static_cast<size_t>(i + side)];
-    log -= most;
-    const double weight = std::exp(log), at = i * step;
-    sum += weight;
-    first += weight * at;
-    second += weight * at * at;
+  for (size_t k = 0; k < softened.size(); ++k) {
+    for (int i = -side; i <= side; ++i) {
+      double &log = m_logPosterior[k][static_cast<size_t>(i + side)];
+      log -= most;
+      const double weight = std::exp(log), at = i * step;
+      sum += weight;
+      first += weight * at;
+      // What changes what lamps show of it is common to all of them.
+      second += weight * (at * at + square(softened[k]));
+    }
   }
   first /= sum;
   m_exposure = m_stated * std::exp(first);
-  // What changes what lamps show of it is common to all of them.
-  m_logSigma = std::sqrt(std::max(0.0, second / sum - first * first) + square(softened));
+  m_logSigma = std::sqrt(std::max(0.0, second / sum - first * first));
 }
 
 bool vpExposureEvidence::contradicts() const
 {
   static const double clearly = 3, notable = 0.25; // standard deviations; of the logarithm
   const double off = std::abs(std::log(m_exposure / m_stated));
-  return !m_logPosterior.empty() && off > clearly * m_logSigma && off > std::max(m_statedLogSigma, notable);
+  return !m_logPosterior.front().empty() && off > clearly * m_logSigma && off > std::max(m_statedLogSigma, notable);
 }
 
 END_VISP_NAMESPACE

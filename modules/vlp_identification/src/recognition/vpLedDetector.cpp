@@ -327,12 +327,12 @@ vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, cons
 */
 void vpLedDetector::shareExposure(const vpLinePicture &picture, std::vector<Region> &regions)
 {
-  const double before = m_exposure.logSigma();
+  const vpExposureEvidence before = m_exposure;
   for (const Region &region : regions) {
-    m_exposure.add(region.lamp.features);
+    m_exposure.add(region.lamp.features, before);
   }
   static const double better = 0.7, clearly = 1, open = 0.05; // share; standard deviations; duty
-  if (!(m_exposure.logSigma() < better * before)) {
+  if (!(m_exposure.logSigma() < better * before.logSigma())) {
     return;
   }
   for (Region &region : regions) {

@@ -24,16 +24,23 @@ void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 //! misstated.
 std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency)
 {
-  static const double longExposure = 0.3, sharp = 0.1, soft = 0.25; // periods
-  static const double uncertain = 0.2;                              // of the stated one's logarithm
+  static const double longest = 0.3, sharp = 0.1;     // periods: from the longest no way leads to sharp stripes
+  static const double uncertain = 0.2, factor = 2.5; // of the stated one's logarithm
   std::vector<double> exposures{profile.exposure};
-  const double stated = profile.exposure * frequency;
-  if (stated > longExposure) { // from there no way leads to sharp stripes
+  if (profile.exposure * frequency > longest) {
     exposures.push_back(sharp / frequency);
-  } else if (profile.logExposureSigma > uncertain && stated < sharp) {
-    exposures.push_back(soft / frequency);
+  } else if (profile.logExposureSigma > uncertain) {
+    exposures.push_back(factor * profile.exposure);
+    exposures.push_back(profile.exposure / factor);
   }
   return exposures;
+}
+
+//! Whether the exposure is about as stated.
+bool asStated(const vpWaveformFit &fit, const vpStripeProfile &profile)
+{
+  static const double about = 0.35; // of the logarithm
+  return std::abs(std::log(fit.value(vpWaveformFit::exposure) / profile.exposure)) < about;
 }
 } // namespace
 
@@ -90,6 +97,9 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse()
           fit.preferStatedExposure()) {
         if (fit.misfit() > allExplained) {
           fit.leaveGap();
+        }
+        if (fit.misfit() < allExplained && asStated(fit, *m_profile)) {
+          return fit;
         }
         keepBetter(best, std::move(fit));
       }

@@ -127,7 +127,6 @@ private:
   Posterior posterior();
   Posterior sliced(const Posterior &bell);
   Posterior onGrid(const Posterior &bell);
-  std::vector<double> likelyExposures(const Posterior &bell) const;
   vpPulsePosterior::Moments momentsWith(double exposed) const;
   bool goOnFrom(const vpPulsePosterior::Moments &moments);
   Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);

@@ -37,23 +37,45 @@ void vpWaveformFit::leaveGap()
   }
 }
 
-//! Mean and covariance of exp(-cost / (2 inflation)) of one pulse a period, by all places on a grid, for each
-//! of the exposures that there may be.
+/*!
+  Mean and covariance of exp(-cost / (2 inflation)) of one pulse a period, by all places on a grid, for each of
+  the exposures that there may be: the fitted one, the stated one, and to both sides as far as the stripes
+  leave it open.
+*/
 vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
 {
+  static const double different = 0.05, unlike = 0.15, uncertain = 0.1, // of the exposure's logarithm
+      node = 1.22, least = 0.2, // standard deviations; of the logarithm
+      hardly = 2;               // of the evidence's logarithm
+  const double fitted = m_x(exposure), stated = m_profile->exposure, off = std::abs(std::log(fitted / stated));
+  const double sigma =
+      std::min(std::sqrt(std::max(0.0, bell.covariance(exposure, exposure))) / fitted, m_logExposureSigma);
   std::vector<Posterior> parts;
   std::vector<double> logs;
-  for (const double exposed : likelyExposures(bell)) {
-    const vpPulsePosterior::Moments moments = momentsWith(exposed);
-    if (parts.empty() && goOnFrom(moments)) {
-      return onGrid(bell);
-    }
+  auto add = [&](const vpPulsePosterior::Moments &moments, double exposed) {
     Posterior part = bell;
     part.mean.head<3>() = moments.mean;
     part.mean(exposure) = exposed;
     part.covariance.topLeftCorner<3, 3>() = moments.covariance;
     parts.push_back(part);
     logs.push_back(moments.logEvidence - 0.5 * prior(exposure, part.mean).chiSquare);
+  };
+  const vpPulsePosterior::Moments found = momentsWith(fitted);
+  if (goOnFrom(found)) {
+    return onGrid(bell);
+  }
+  add(found, fitted);
+  if (off > different) {
+    add(momentsWith(stated), stated);
+  }
+  if (sigma > uncertain || off > unlike) {
+    for (const double step : {-std::max(node * sigma, least), std::max(node * sigma, least)}) {
+      double exposed = fitted;
+      do {
+        exposed *= std::exp(step);
+        add(momentsWith(exposed), exposed);
+      } while (logs.back() > logs.front() - hardly && exposed > m_leastExposure && exposed < m_mostExposure);
+    }
   }
   const double most = *std::max_element(logs.begin(), logs.end());
   Moments all(m_x);
@@ -66,24 +88,6 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
     sum += weight;
   }
   return {all.mean(), all.covariance() + within / sum};
-}
-
-//! The fitted one, the stated one, and what the fit leaves open, s.
-std::vector<double> vpWaveformFit::likelyExposures(const Posterior &bell) const
-{
-  static const double different = 0.05, uncertain = 0.1, node = 1.22; // share; share; standard deviations
-  const double fitted = m_x(exposure), stated = m_profile->exposure;
-  const double sigma =
-      std::min(std::sqrt(std::max(0.0, bell.covariance(exposure, exposure))) / fitted, m_logExposureSigma);
-  std::vector<double> exposures{fitted};
-  if (std::abs(std::log(fitted / stated)) > different) {
-    exposures.push_back(stated);
-  }
-  if (sigma > uncertain) {
-    exposures.push_back(fitted * std::exp(node * sigma));
-    exposures.push_back(fitted * std::exp(-node * sigma));
-  }
-  return exposures;
 }
 
 //! Frequency, phase and duty about m_x, were that the exposure, s.

@@ -5,6 +5,7 @@
 #ifndef vpExposureEvidence_h
 #define vpExposureEvidence_h
 
+#include <array>
 #include <vector>
 
 #include <visp3/vlp_core/vpLampObservation.h>
@@ -26,8 +27,9 @@ public:
   //! \param stated s. \param logSigma Standard deviation of its logarithm; 0: it is known.
   explicit vpExposureEvidence(double stated = 0, double logSigma = 0);
 
-  //! Adds one lamp of one frame. Only stripes of one pulse a period count.
-  void add(const vpStripeFeatures &seen);
+  //! Adds one lamp of one frame. Only stripes of one pulse a period count. \param before What was known of the
+  //! exposure when they were read.
+  void add(const vpStripeFeatures &seen, const vpExposureEvidence &before);
 
   double stated() const { return m_stated; }     // s
   double exposure() const { return m_exposure; } // s, by all that is known
@@ -40,7 +42,8 @@ private:
 
   double m_stated, m_statedLogSigma;
   double m_exposure, m_logSigma;
-  std::vector<double> m_logPosterior; // at logarithms from -reach to +reach about the stated one's
+  // At logarithms from -reach to +reach about the stated one's, with each softening.
+  std::array<std::vector<double>, 2> m_logPosterior;
 };
 
 END_VISP_NAMESPACE
