@@ -134,7 +134,7 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
   for (size_t i = 0; i < regions.size(); ++i) {
     const bool told = tells(regions[i].lamp);
     completeOne(picture, regions, i);
-    if (blinksSomehow(regions[i].lamp) && readAround(picture, regions[i])) {
+    if (blinksSomehow(regions[i].lamp) && !isWhole(regions[i].fit) && readAround(picture, regions[i])) {
       completeOne(picture, regions, i);
     }
     if (!told && tells(regions[i].lamp)) {
@@ -158,8 +158,8 @@ void vpLedDetector::takeApart(const vpLinePicture &picture, std::vector<Region> 
     double darkest = 0;
     cv::minMaxLoc(picture.grey(roi.box), &darkest);
     for (const double times : {2.0, 4.0}) {
-      if (!blinksSomehow(regions[i].lamp)) {
-        break; // steady, or taken apart already
+      if (!blinksSomehow(regions[i].lamp) || isWhole(regions[i].fit)) {
+        break; // steady, one lamp, or taken apart already
       }
       vpLedRoiDetector bright = roiDetector;
       bright.minContrast = times * (roi.level - darkest);
@@ -287,7 +287,7 @@ void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<Region>
     }
     if (pieces.size() > 1) {
       Region together = observe(picture, whole);
-      if (tells(together.lamp)) {
+      if (vpPatchwork::isLamp(together.lamp.features)) {
         regions[i] = together;
         for (size_t n = 1; n < pieces.size(); ++n) {
           regions[pieces[n]].roi.chords.clear(); // is no region any more

@@ -16,6 +16,7 @@
 
 #include "stripes/vpLampGlance.h"
 #include "stripes/vpSteadyLight.h"
+#include "stripes/vpStripeStarts.h"
 #include "vpSeenRegion.h"
 #include "vpTransposed.h"
 #include <visp3/vlp_core/vpBrighter.h>
@@ -297,28 +298,26 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
 }
 
 /*!
-  What the lines' means hide the columns may agree on. Any texture has shades that some columns agree on: a
-  lamp has three stripes or more, of a frequency that is well known, and is as dark between them as its wave
-  says.
+  What the lines' means hide the columns may agree on: what is a lamp's, and as dark between the stripes as
+  its wave says.
 */
 vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, const vpOutlineFit &fit,
                                               const vpLedRoi &roi) const
 {
-  static const unsigned int few = 3;
-  static const double vague = 0.01, unlike = 0.2; // share of the frequency; depth
+  static const double unlike = 0.2; // depth
   vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
+  if (vpStripeStarts::peaks(agreed).size() < vpPatchwork::fewestStripes) {
+    return {};
+  }
   agreed.exposure = m_exposure.exposure();
   agreed.logExposureSigma = m_exposure.logSigma();
   const vpStripeFeatures features = stripeAnalyzer.analyze(agreed);
-  if (features.stripes < few || !vpLedIdEvidence::tells(features) ||
-      features.signal == vpStripeFeatures::Signal::coded) {
-    return features.stripes < few ? vpStripeFeatures() : features;
+  if (!vpPatchwork::isLamp(features) || features.signal == vpStripeFeatures::Signal::coded) {
+    return features.signal == vpStripeFeatures::Signal::coded ? features : vpStripeFeatures();
   }
   vpStripeProfile wave;
   wave.light = vpLitShareOf(features, agreed.time);
-  const bool hardly = features.frequencySigma > vague * features.frequency ||
-                      std::abs(features.modulation - wave.depth()) > unlike;
-  return hardly ? vpStripeFeatures() : features;
+  return std::abs(features.modulation - wave.depth()) > unlike ? vpStripeFeatures() : features;
 }
 
 /*!

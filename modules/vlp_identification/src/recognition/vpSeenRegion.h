@@ -6,6 +6,7 @@
 #define vpSeenRegion_h
 
 #include <visp3/vlp_identification/vpLedDetector.h>
+#include <visp3/vlp_identification/vpLedIdEvidence.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -15,6 +16,22 @@ struct vpLedDetector::Region {
   vpOutlineFit fit;
   vpLampObservation lamp;
 };
+
+/*!
+  Stripes that were put together of patches. Any texture has shades that some columns agree on, and two steady
+  lights above each other are two stripes: a lamp has more, of a frequency that is well known.
+*/
+namespace vpPatchwork
+{
+constexpr size_t fewestStripes = 3;
+
+inline bool isLamp(const vpStripeFeatures &seen)
+{
+  constexpr double vague = 0.01; // share of the frequency
+  return seen.stripes >= fewestStripes && vpLedIdEvidence::tells(seen) &&
+         seen.frequencySigma <= vague * seen.frequency;
+}
+} // namespace vpPatchwork
 
 END_VISP_NAMESPACE
 
