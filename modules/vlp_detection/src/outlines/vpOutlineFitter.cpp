@@ -65,19 +65,6 @@ vpOutlineFit likelier(const vpEdgeFit<vpEllipseModel> &ellipse, const vpEdgeFit<
 
 const double rare = 6; // chi-square of the shape's prior
 
-/*!
-  Thin stripes far apart show little of an outline: where they make an ellipse longer than lamps are seen, it
-  may be another shape altogether, and the middle lies anywhere along it.
-*/
-void addElongationDoubt(vpLampOutline &ellipse, const vpLedRoi &roi, double prior)
-{
-  if (prior > rare && roi.chords.size() < ellipse.b) {
-    const Eigen::Vector2d along(std::cos(ellipse.angle), std::sin(ellipse.angle));
-    const double doubt = 0.5 * (ellipse.a - ellipse.b);
-    ellipse.centreCovariance += doubt * doubt * along * along.transpose();
-  }
-}
-
 //! Whether the region's lit lines all cross the outline: one that leaves some out was fitted to a part of the
 //! lamp.
 bool holds(const vpOutlineFit &fit, const vpLedRoi &roi)
@@ -91,25 +78,13 @@ bool holds(const vpOutlineFit &fit, const vpLedRoi &roi)
   return static_cast<double>(inside) >= most * static_cast<double>(roi.chords.size());
 }
 
-const double softMisfit = 0.15; // share of the radius, root mean square of chord ends about their ellipse
-const double evenEdge = 0.45;   // evenness below which a lamp glows about a bright core
+const double evenEdge = 0.45; // evenness below which a lamp glows about a bright core
 
 //! Whether an edge is that of a lamp: a bright core in a glow has none of its own.
 bool isSharp(const vpOutlineFit &fit)
 {
   static const double sharp = 0.1; // share of the radius
   return fit.blur <= std::max(1.0, sharp * 0.5 * fit.outline.diameter());
-}
-
-/*!
-  A lamp that glows about a bright core: its glow, or a housing that it lights, may lie anywhere about it. Its
-  middle is that of its light. Across the lines stripes weigh on it a little.
-*/
-void centreOnLight(vpLampOutline &outline, const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
-{
-  outline.centre = vpRimFit::middleOfLight(lines, roi).value_or(outline.centre);
-  static const Eigen::Vector2d doubt(0.04, 0.06); // share of the radius, standard deviation
-  outline.centreCovariance = (0.5 * outline.diameter() * doubt).cwiseAbs2().asDiagonal();
 }
 
 //! How much brighter the brightest of a chord is than its region's level, grey levels.
@@ -302,7 +277,6 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   }
   if (isEllipse) {
     best = ellipse.result();
-    addElongationDoubt(best.outline, roi, ellipse.prior());
   }
   bool even = evenness > evenEdge;
   double kept = isEllipse ? ellipse.kept() : 0, edges = evenness; // of what is taken at last
@@ -343,14 +317,6 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   const bool sided = best.outline.shape == vpLampOutline::Shape::quadrilateral;
   if (cut && (!even || (sided && !showsSides(best.outline, lines.size())))) {
     best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
-  } else if (!even &&
-             !(isEllipse && isSharp(best) && ellipse.prior() < rare && ellipse.kept() > nearlyPerfect) &&
-             (isEllipse || ellipseMisfit < std::min(softMisfit * start.radius(), 2 * sidesMisfit))) {
-    if (!isEllipse) {
-      best.outline = start.outline(Eigen::MatrixXd::Zero(2, 2));
-      best.blur = softMisfit * start.radius();
-    }
-    centreOnLight(best.outline, lines, roi);
   } else if (evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
     addCompanionDoubt(best.outline, ellipse.misfit(), brightestOf(lines, roi));
   }

@@ -70,7 +70,8 @@ std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim)
     return std::nullopt;
   }
   static const double independent = 8; // ends, of as many as there are
-  const double ellipse = vpChordShape::ellipseMisfit(rim, cv::boundingRect(rim)), sides = vpChordShape::rectangleMisfit(rim),
+  const double ellipse = vpChordShape::ellipseMisfit(rim, cv::boundingRect(rim)),
+               sides = vpChordShape::rectangleMisfit(rim),
                worse = std::max(sides, ellipse) / std::max(std::min(sides, ellipse), 0.1);
   const double otherShape = 1 / (1 + std::pow(worse, independent));
   if (sides < ellipse) {

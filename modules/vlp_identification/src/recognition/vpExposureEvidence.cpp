@@ -15,8 +15,8 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double sigmas = 5;      // standard deviations of the stated exposure that are looked at
-const double step = 0.04;     // of the logarithm
+const double sigmas = 5;  // standard deviations of the stated exposure that are looked at
+const double step = 0.04; // of the logarithm
 // Of the logarithm, by which tone curve and blur change what a lamp shows of it: hardly or notably.
 const std::array<double, 2> softened{0.03, 0.15};
 
@@ -41,8 +41,8 @@ vpExposureEvidence::vpExposureEvidence(double stated, double logSigma)
 
 void vpExposureEvidence::add(const vpStripeFeatures &seen, const vpExposureEvidence &before)
 {
-  if (m_logPosterior.front().empty() || seen.signal != vpStripeFeatures::Signal::pwm || !(seen.exposure > 0) ||
-      !(seen.exposureSigma > 0) || !(seen.frequencySigma < seen.frequency)) {
+  if (m_logPosterior.front().empty() || seen.signal != vpStripeFeatures::Signal::pwm ||
+      !(seen.exposure > 0) || !(seen.exposureSigma > 0) || !(seen.frequencySigma < seen.frequency)) {
     return;
   }
   static const double saysNothing = 0.05, mostKnown = 0.95; // shares of the lamps; of what was read
@@ -101,7 +101,8 @@ bool vpExposureEvidence::contradicts() const
 {
   static const double clearly = 3, notable = 0.25; // standard deviations; of the logarithm
   const double off = std::abs(std::log(m_exposure / m_stated));
-  return !m_logPosterior.front().empty() && off > clearly * m_logSigma && off > std::max(m_statedLogSigma, notable);
+  return !m_logPosterior.front().empty() && off > clearly * m_logSigma &&
+         off > std::max(m_statedLogSigma, notable);
 }
 
 END_VISP_NAMESPACE

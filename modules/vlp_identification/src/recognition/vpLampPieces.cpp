@@ -182,22 +182,36 @@ void vpLedDetector::completeOne(const vpLinePicture &picture, std::vector<Region
 {
   static const double alike = 0.6; // share of a part's light
   const Region region = regions[i];
-  const bool alone = std::none_of(regions.begin(), regions.end(), [&](const Region &other) {
-    return &other != &regions[i] && !isWhole(other.fit) && neighbours(region.roi, other.roi) &&
-           mayBlinkAlike(region.lamp, other.lamp);
-  });
-  if (std::isnan(region.lamp.features.phase) || (alone && tells(region.lamp) && isWhole(region.fit))) {
+  if (std::isnan(region.lamp.features.phase)) {
+    return;
+  }
+  const bool whole = tells(region.lamp) && isWhole(region.fit);
+  auto mayBePart = [&](size_t k) {
+    const Region &other = regions[k];
+    return k != i && !isWhole(other.fit) && mayBlinkAlike(region.lamp, other.lamp) &&
+           (!whole || neighbours(region.roi, other.roi));
+  };
+  std::vector<size_t> near;
+  for (size_t k = 0; k < regions.size(); ++k) {
+    if (mayBePart(k)) {
+      near.push_back(k);
+    }
+  }
+  if (whole && near.empty()) {
     return;
   }
   const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
-  std::vector<cv::Rect> others;
   std::vector<char> part(regions.size(), 0);
+  for (size_t k : near) {
+    part[k] = vpBlinkingLight::share(picture.grey, lit, regions[k].roi.box) > alike;
+  }
+  if (whole && std::none_of(part.begin(), part.end(), [](char is) { return is != 0; })) {
+    return;
+  }
+  std::vector<cv::Rect> others;
   for (size_t k = 0; k < regions.size(); ++k) {
-    const Region &other = regions[k];
-    part[k] = k != i && !isWhole(other.fit) && mayBlinkAlike(region.lamp, other.lamp) &&
-              vpBlinkingLight::share(picture.grey, lit, other.roi.box) > alike;
     if (k != i && part[k] == 0) {
-      others.push_back(other.roi.box);
+      others.push_back(regions[k].roi.box);
     }
   }
   complete(picture, lit, others, regions[i]);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -138,6 +139,32 @@ std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter
   return formats;
 }
 
+//! s, the longest of the map's lamps' periods; infinite without lamps.
+double longestPeriodOf(const vpLampMap &map)
+{
+  double longest = map.lamps.empty() ? std::numeric_limits<double>::infinity() : 0;
+  for (const vpLamp &lamp : map.lamps) {
+    longest = std::max(longest, 1 / lamp.modulation.repetitionFrequency());
+  }
+  return longest;
+}
+
+//! s, the longest stretch of a profile's lines that are nearer to its brightest than to its darkest one.
+double longestLit(const vpStripeProfile &profile)
+{
+  const auto [least, most] = std::minmax_element(profile.light.begin(), profile.light.end());
+  const double bright = 0.5 * (*least + *most);
+  double longest = 0;
+  size_t begun = 0;
+  for (size_t i = 0; i < profile.light.size(); ++i) {
+    begun = profile.light[i] > bright ? begun : i + 1;
+    if (begun <= i) {
+      longest = std::max(longest, std::abs(profile.time[i] - profile.time[begun]));
+    }
+  }
+  return longest;
+}
+
 std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
 {
   std::vector<vpImagePoint> corners;
@@ -155,7 +182,7 @@ std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
 } // namespace
 
 vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
-    : recognizer(map, rig.shutter), m_rig(rig)
+    : recognizer(map, rig.shutter), m_rig(rig), m_longestPeriod(longestPeriodOf(map))
 {
   if (rig.width == 0 || rig.height == 0) {
     throw vpException(vpException::badValue,
@@ -287,10 +314,15 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
   profile.exposure = m_exposure.exposure();
   profile.logExposureSigma = m_exposure.logSigma();
+  static const double longer = 1.2; // by row time, clock and blur
+  if (!profile.light.empty() && longestLit(profile) > longer * m_longestPeriod) {
+    return {}; // shines for longer than any lamp of the map
+  }
   const vpStripeFeatures features = stripeAnalyzer.analyze(profile);
   static const double explained = 0.01; // misfit
   const bool tells = vpLedIdEvidence::tells(features);
-  if ((tells && features.misfit < explained) || features.modulation < stripeAnalyzer.minModulation) {
+  if ((tells && features.misfit < explained) ||
+      features.modulation < (tells ? stripeAnalyzer.minModulation : vpPatchwork::least)) {
     return features;
   }
   const vpStripeFeatures other = agreedStripes(picture, fit, roi);
@@ -306,7 +338,8 @@ vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, cons
 {
   static const double unlike = 0.2; // depth
   vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
-  if (vpStripeStarts::peaks(agreed).size() < vpPatchwork::fewestStripes) {
+  if (vpStripeStarts::peaks(agreed).size() < vpPatchwork::fewestStripes ||
+      agreed.depth() < vpPatchwork::least) {
     return {};
   }
   agreed.exposure = m_exposure.exposure();

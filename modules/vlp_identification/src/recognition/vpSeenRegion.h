@@ -24,6 +24,7 @@ struct vpLedDetector::Region {
 namespace vpPatchwork
 {
 constexpr size_t fewestStripes = 3;
+constexpr double least = 0.5; // depth: an emitter that shines steadily is shaded by less
 
 inline bool isLamp(const vpStripeFeatures &seen)
 {

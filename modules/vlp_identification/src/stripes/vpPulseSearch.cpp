@@ -24,7 +24,7 @@ void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 //! misstated.
 std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency)
 {
-  static const double longest = 0.3, sharp = 0.1;     // periods: from the longest no way leads to sharp stripes
+  static const double longest = 0.3, sharp = 0.1; // periods: from the longest no way leads to sharp stripes
   static const double uncertain = 0.2, factor = 2.5; // of the stated one's logarithm
   std::vector<double> exposures{profile.exposure};
   if (profile.exposure * frequency > longest) {

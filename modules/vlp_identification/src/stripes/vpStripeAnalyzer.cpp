@@ -89,9 +89,11 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
   const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, tolerance}, envelope);
   const bool neither = !(unexplained < analyzer.maxMisfit);
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
-  // A word without a name has two pulses or more, and fewer than three stripes would repeat none of them.
+  // A word without a name has two pulses or more, and fewer than three stripes would repeat none of them; its
+  // lamp is off between them.
   static const size_t fewest = 3;
-  if (neither && stripes >= fewest && (!word || word->inflation > explained)) {
+  static const double off = 0.7; // depth
+  if (neither && stripes >= fewest && profile.depth() > off && (!word || word->inflation > explained)) {
     const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
     static const double clearlyLess = 0.8;
     if (!word || (other && other->inflation < clearlyLess * word->inflation)) {

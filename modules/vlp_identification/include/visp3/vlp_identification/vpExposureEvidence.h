@@ -27,8 +27,8 @@ public:
   //! \param stated s. \param logSigma Standard deviation of its logarithm; 0: it is known.
   explicit vpExposureEvidence(double stated = 0, double logSigma = 0);
 
-  //! Adds one lamp of one frame. Only stripes of one pulse a period count. \param before What was known of the
-  //! exposure when they were read.
+  //! Adds one lamp of one frame. Only stripes of one pulse a period count. \param before What was known of
+  //! the exposure when they were read.
   void add(const vpStripeFeatures &seen, const vpExposureEvidence &before);
 
   double stated() const { return m_stated; }     // s

@@ -112,6 +112,7 @@ private:
 
   vpVlpRig m_rig;
   vpLineTiming m_timing;
+  double m_longestPeriod; // s, of the map's lamps
   std::vector<vpLampObservation> m_observations;
   vpRowTimeError m_rowTimeError;
   vpExposureEvidence m_exposure;
