@@ -139,14 +139,15 @@ std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter
   return formats;
 }
 
-//! s, the longest of the map's lamps' periods; infinite without lamps.
-double longestPeriodOf(const vpLampMap &map)
+//! s, the longest of the map's lamps' periods, as far as the row time is known; infinite without lamps.
+double longestPeriodOf(const vpLampMap &map, const vpRollingShutter &shutter)
 {
+  static const double blur = 0.2, sigmas = 5;
   double longest = map.lamps.empty() ? std::numeric_limits<double>::infinity() : 0;
   for (const vpLamp &lamp : map.lamps) {
     longest = std::max(longest, 1 / lamp.modulation.repetitionFrequency());
   }
-  return longest;
+  return longest * (1 + blur + (shutter.rowTime > 0 ? sigmas * shutter.rowTimeSigma / shutter.rowTime : 0));
 }
 
 //! s, the longest stretch of a profile's lines that are nearer to its brightest than to its darkest one.
@@ -182,7 +183,7 @@ std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
 } // namespace
 
 vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
-    : recognizer(map, rig.shutter), m_rig(rig), m_longestPeriod(longestPeriodOf(map))
+    : recognizer(map, rig.shutter), longestPeriod(longestPeriodOf(map, rig.shutter)), m_rig(rig)
 {
   if (rig.width == 0 || rig.height == 0) {
     throw vpException(vpException::badValue,
@@ -314,9 +315,8 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
   profile.exposure = m_exposure.exposure();
   profile.logExposureSigma = m_exposure.logSigma();
-  static const double longer = 1.2; // by row time, clock and blur
-  if (!profile.light.empty() && longestLit(profile) > longer * m_longestPeriod) {
-    return {}; // shines for longer than any lamp of the map
+  if (!profile.light.empty() && longestLit(profile) > longestPeriod) {
+    return {};
   }
   const vpStripeFeatures features = stripeAnalyzer.analyze(profile);
   static const double explained = 0.01; // misfit

@@ -108,10 +108,7 @@ void vpWaveformFit::evaluateValue(const Vector &x)
   }
 }
 
-/*!
-  Prior of a parameter at \e x: chi-square, its curvature and its mean. The exposure's is Cauchy's: nearly
-  always it is as stated, and where it is not, it may be anything.
-*/
+//! Prior of a parameter at \e x: chi-square, its curvature and its mean.
 vpWaveformFit::Prior vpWaveformFit::prior(int parameter, const Vector &x) const
 {
   auto bell = [&](double mean, double sigma) {
@@ -125,7 +122,7 @@ vpWaveformFit::Prior vpWaveformFit::prior(int parameter, const Vector &x) const
   case exposure: {
     const double log = std::log(x(exposure) / m_profile->exposure), z = log / m_logExposureSigma,
                  perLog = m_logExposureSigma * x(exposure);
-    return {std::log1p(z * z), 1 / (perLog * perLog * (1 + z * z)), x(exposure) * (1 - log)};
+    return {z * z, 1 / (perLog * perLog), x(exposure) * (1 - log)};
   }
   case duty:
     return bell(0.5, 0.3); // the spread of a uniform one

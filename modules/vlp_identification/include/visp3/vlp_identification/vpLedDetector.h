@@ -43,6 +43,8 @@ public:
   vpLedIdRecognizer recognizer;
   bool skipSteady =
       false; // regions whose lines show no stripes at a first look have no outline but their box
+  //! s, what shines on end for longer is steady light. By default as the map and the row time have it.
+  double longestPeriod;
 
   //! \throw vpException where the rig has no picture size.
   vpLedDetector(const vpVlpRig &rig, const vpLampMap &map);
@@ -112,7 +114,6 @@ private:
 
   vpVlpRig m_rig;
   vpLineTiming m_timing;
-  double m_longestPeriod; // s, of the map's lamps
   std::vector<vpLampObservation> m_observations;
   vpRowTimeError m_rowTimeError;
   vpExposureEvidence m_exposure;
