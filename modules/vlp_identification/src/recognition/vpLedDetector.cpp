@@ -139,13 +139,25 @@ std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter
   return formats;
 }
 
-//! s, the longest of the map's lamps' periods, as far as the row time is known; infinite without lamps.
-double longestPeriodOf(const vpLampMap &map, const vpRollingShutter &shutter)
+//! s, for how long a lamp is dark in each period, at least, where that is known.
+double shortestDark(const vpModulation &sent)
 {
-  static const double blur = 0.2, sigmas = 5;
-  double longest = map.lamps.empty() ? std::numeric_limits<double>::infinity() : 0;
+  static const double usualDuty = 0.8; // the longest that is planned
+  const double period = 1 / sent.repetitionFrequency();
+  return sent.kind == vpModulation::Kind::word ? period / static_cast<double>(sent.chips().size())
+                                               : 0.5 * (1 - sent.duty.value_or(usualDuty)) * period;
+}
+
+//! s, the longest of the map's lamps' periods, as far as the row time is known; infinite without lamps, and
+//! where one may be dark for so short that no line shows it.
+double longestPeriodOf(const vpLampMap &map, const vpRollingShutter &shutter, const vpLineTiming &timing)
+{
+  static const double blur = 0.2, sigmas = 5, never = std::numeric_limits<double>::infinity();
+  const double shown = std::abs(timing.middle(1) - timing.middle(0)) + timing.exposure();
+  double longest = map.lamps.empty() ? never : 0;
   for (const vpLamp &lamp : map.lamps) {
-    longest = std::max(longest, 1 / lamp.modulation.repetitionFrequency());
+    const vpModulation &sent = lamp.modulation;
+    longest = std::max(longest, shortestDark(sent) > shown ? 1 / sent.repetitionFrequency() : never);
   }
   return longest * (1 + blur + (shutter.rowTime > 0 ? sigmas * shutter.rowTimeSigma / shutter.rowTime : 0));
 }
@@ -183,13 +195,14 @@ std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
 } // namespace
 
 vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
-    : recognizer(map, rig.shutter), longestPeriod(longestPeriodOf(map, rig.shutter)), m_rig(rig)
+    : recognizer(map, rig.shutter), m_rig(rig)
 {
   if (rig.width == 0 || rig.height == 0) {
     throw vpException(vpException::badValue,
                       "rig: picture size is 0, expected the camera's width and height");
   }
   m_timing = rig.lineTiming();
+  longestPeriod = longestPeriodOf(map, rig.shutter, m_timing);
   m_exposure =
       vpExposureEvidence(std::hypot(m_timing.exposure(), m_timing.averaging()), m_timing.logExposureSigma());
   stripeAnalyzer.searchTwoPulses = std::any_of(map.lamps.begin(), map.lamps.end(), [](const vpLamp &lamp) {

@@ -44,7 +44,7 @@ public:
   bool skipSteady =
       false; // regions whose lines show no stripes at a first look have no outline but their box
   //! s, what shines on end for longer is steady light. By default as the map and the row time have it.
-  double longestPeriod;
+  double longestPeriod = 0;
 
   //! \throw vpException where the rig has no picture size.
   vpLedDetector(const vpVlpRig &rig, const vpLampMap &map);
