@@ -80,8 +80,8 @@ class VISP_EXPORT vpStripeAnalyzer
 {
 public:
   double modelError = 0.03; // share of a line's light that the model may be off by, standard deviation
-  //! How far one lamp's exposure is off the camera's, beyond what the profile states of that: half-width of a
-  //! Cauchy distribution of its logarithm. Blur and a phone's tone curve soften edges far more, now and then.
+  //! How far one lamp's exposure is off the camera's, beyond what the profile states of that: standard
+  //! deviation of its logarithm.
   double exposureTolerance = 0.02;
   //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained; no word of unknown format
   //! is sought below. Between the little that there is: pwm lamps of phones leave up to 0.09, coded lamps
