@@ -139,45 +139,6 @@ std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter
   return formats;
 }
 
-//! s, for how long a lamp is dark in each period, at least, where that is known.
-double shortestDark(const vpModulation &sent)
-{
-  static const double usualDuty = 0.8; // the longest that is planned
-  const double period = 1 / sent.repetitionFrequency();
-  return sent.kind == vpModulation::Kind::word ? period / static_cast<double>(sent.chips().size())
-                                               : 0.5 * (1 - sent.duty.value_or(usualDuty)) * period;
-}
-
-//! s, the longest of the map's lamps' periods, as far as the row time is known; infinite without lamps, and
-//! where one may be dark for so short that no line shows it.
-double longestPeriodOf(const vpLampMap &map, const vpRollingShutter &shutter, const vpLineTiming &timing)
-{
-  static const double blur = 0.2, sigmas = 5, never = std::numeric_limits<double>::infinity();
-  const double shown = std::abs(timing.middle(1) - timing.middle(0)) + timing.exposure();
-  double longest = map.lamps.empty() ? never : 0;
-  for (const vpLamp &lamp : map.lamps) {
-    const vpModulation &sent = lamp.modulation;
-    longest = std::max(longest, shortestDark(sent) > shown ? 1 / sent.repetitionFrequency() : never);
-  }
-  return longest * (1 + blur + (shutter.rowTime > 0 ? sigmas * shutter.rowTimeSigma / shutter.rowTime : 0));
-}
-
-//! s, the longest stretch of a profile's lines that are nearer to its brightest than to its darkest one.
-double longestLit(const vpStripeProfile &profile)
-{
-  const auto [least, most] = std::minmax_element(profile.light.begin(), profile.light.end());
-  const double bright = 0.5 * (*least + *most);
-  double longest = 0;
-  size_t begun = 0;
-  for (size_t i = 0; i < profile.light.size(); ++i) {
-    begun = profile.light[i] > bright ? begun : i + 1;
-    if (begun <= i) {
-      longest = std::max(longest, std::abs(profile.time[i] - profile.time[begun]));
-    }
-  }
-  return longest;
-}
-
 std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
 {
   std::vector<vpImagePoint> corners;
@@ -202,7 +163,7 @@ vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
                       "rig: picture size is 0, expected the camera's width and height");
   }
   m_timing = rig.lineTiming();
-  longestPeriod = longestPeriodOf(map, rig.shutter, m_timing);
+  longestPeriod = vpLongestPeriod(map, rig);
   m_exposure =
       vpExposureEvidence(std::hypot(m_timing.exposure(), m_timing.averaging()), m_timing.logExposureSigma());
   stripeAnalyzer.searchTwoPulses = std::any_of(map.lamps.begin(), map.lamps.end(), [](const vpLamp &lamp) {
@@ -328,7 +289,7 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
   profile.exposure = m_exposure.exposure();
   profile.logExposureSigma = m_exposure.logSigma();
-  if (!profile.light.empty() && longestLit(profile) > longestPeriod) {
+  if (!profile.light.empty() && vpLongestLit(profile) > longestPeriod) {
     return {};
   }
   const vpStripeFeatures features = stripeAnalyzer.analyze(profile);

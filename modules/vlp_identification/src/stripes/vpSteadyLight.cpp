@@ -5,7 +5,9 @@
 #include "vpSteadyLight.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 BEGIN_VISP_NAMESPACE
@@ -28,6 +30,21 @@ double deepestDip(const std::vector<double> &values, double tolerance)
     deepest = std::max(deepest, std::min(before, after[i]) - values[i] - tolerance);
   }
   return deepest / std::max(2 * most - deepest, 1.0);
+}
+
+//! s, for how long a lamp is dark on end, once a period at least.
+double darkTime(const vpModulation &sent)
+{
+  static const double usualDuty = 0.8; // the longest that is planned
+  const double period = 1 / sent.repetitionFrequency(), lit = sent.duty.value_or(usualDuty);
+  switch (sent.kind) {
+  case vpModulation::Kind::word:
+    return period / static_cast<double>(sent.chips().size());
+  case vpModulation::Kind::twoPulse:
+    return 0.5 * (1 - lit) * period;
+  default:
+    return (1 - lit) * period;
+  }
 }
 } // namespace
 
@@ -60,6 +77,38 @@ double vpDeepestDip(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
   }
   static const double noise = 2, ragged = 3; // grey levels, samples
   return std::max(deepestDip(light, noise), deepestDip(length, ragged));
+}
+
+double vpLongestLit(const vpStripeProfile &profile)
+{
+  const auto [least, most] = std::minmax_element(profile.light.begin(), profile.light.end());
+  const double bright = 0.5 * (*least + *most);
+  double longest = 0;
+  size_t begun = 0;
+  for (size_t i = 0; i < profile.light.size(); ++i) {
+    begun = profile.light[i] > bright ? begun : i + 1;
+    if (begun <= i) {
+      longest = std::max(longest, std::abs(profile.time[i] - profile.time[begun]));
+    }
+  }
+  return longest;
+}
+
+double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig)
+{
+  static const double blur = 0.2, sigmas = 5, never = std::numeric_limits<double>::infinity();
+  // The darkest line lies half a line off the dark time's middle at most: more than half of its exposure is
+  // dark where that time is longer than both a line and half an exposure.
+  const vpRollingShutter &shutter = rig.shutter;
+  const double rows = std::ceil(std::abs(rig.lineTiming().meanLineTime()) / shutter.rowTime), // of a line
+      exposure = shutter.exposure * std::exp(shutter.logExposureSigma()),
+               shown = std::max(rows * shutter.rowTime, 0.5 * exposure);
+  double longest = map.lamps.empty() ? never : 0;
+  for (const vpLamp &lamp : map.lamps) {
+    const double dark = darkTime(lamp.modulation);
+    longest = std::max(longest, dark > shown ? 1 / lamp.modulation.repetitionFrequency() : never);
+  }
+  return longest * (1 + blur + sigmas * shutter.rowTimeSigma / shutter.rowTime);
 }
 
 END_VISP_NAMESPACE

@@ -6,7 +6,10 @@
 #define vpSteadyLight_h
 
 #include <opencv2/core.hpp>
+#include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_detection/vpLedRoiDetector.h>
+#include <visp3/vlp_identification/vpStripeAnalyzer.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -16,6 +19,16 @@ BEGIN_VISP_NAMESPACE
   1 for a dark gap between its lines, and where there are few lines.
 */
 double vpDeepestDip(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi);
+
+//! s, the longest stretch of a profile's lines that are nearer to its brightest than to its darkest one.
+double vpLongestLit(const vpStripeProfile &profile);
+
+/*!
+  s, the longest period of the map's lamps, as far as the row time is known: what shines on end for longer is
+  none of them. Infinite without lamps, and where one may be dark for so short that every line sees more light
+  than half.
+*/
+double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig);
 
 END_VISP_NAMESPACE
 

@@ -39,16 +39,15 @@ void vpWaveformFit::leaveGap()
 
 /*!
   Mean and covariance of exp(-cost / (2 inflation)) of one pulse a period, by all places on a grid, for each
-  of the exposures that there may be: the fitted one, the stated one, and to both sides as far as the stripes
-  leave it open.
+  of the exposures that there may be: the fitted one and those to both sides, as far as the stripes leave it
+  open.
 */
 vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
 {
-  static const double different = 0.05, unlike = 0.15, uncertain = 0.1, // of the exposure's logarithm
-      node = 1.22, least = 0.2, // standard deviations; of the logarithm
-      hardly = 2;               // of the evidence's logarithm
-  const double fitted = m_x(exposure), stated = m_profile->exposure,
-               off = std::abs(std::log(fitted / stated));
+  static const double different = 0.05, uncertain = 0.1, least = 0.2, // of the exposure's logarithm
+      node = 1.22,                                                    // standard deviations
+      hardly = 2;                                                     // of the evidence's logarithm
+  const double fitted = m_x(exposure), off = std::abs(std::log(fitted / m_profile->exposure));
   const double sigma =
       std::min(std::sqrt(std::max(0.0, bell.covariance(exposure, exposure))) / fitted, m_logExposureSigma);
   std::vector<Posterior> parts;
@@ -66,10 +65,7 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
     return onGrid(bell);
   }
   add(found, fitted);
-  if (off > different) {
-    add(momentsWith(stated), stated);
-  }
-  if (sigma > uncertain || off > unlike) {
+  if (sigma > uncertain || off > different) {
     for (const double step : {-std::max(node * sigma, least), std::max(node * sigma, least)}) {
       double exposed = fitted;
       do {
