@@ -97,12 +97,11 @@ double vpLongestLit(const vpStripeProfile &profile)
 double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig)
 {
   static const double blur = 0.2, sigmas = 5, never = std::numeric_limits<double>::infinity();
-  // The darkest line lies half a line off the dark time's middle at most: more than half of its exposure is
-  // dark where that time is longer than both a line and half an exposure.
+  // The darkest line lies half a line off the dark time's middle at most: its whole exposure is dark where
+  // that time is longer than both together.
   const vpRollingShutter &shutter = rig.shutter;
   const double rows = std::ceil(std::abs(rig.lineTiming().meanLineTime()) / shutter.rowTime), // of a line
-      exposure = shutter.exposure * std::exp(shutter.logExposureSigma()),
-               shown = std::max(rows * shutter.rowTime, 0.5 * exposure);
+      shown = rows * shutter.rowTime + shutter.exposure * std::exp(shutter.logExposureSigma());
   double longest = map.lamps.empty() ? never : 0;
   for (const vpLamp &lamp : map.lamps) {
     const double dark = darkTime(lamp.modulation);

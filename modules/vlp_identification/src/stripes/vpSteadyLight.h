@@ -25,8 +25,8 @@ double vpLongestLit(const vpStripeProfile &profile);
 
 /*!
   s, the longest period of the map's lamps, as far as the row time is known: what shines on end for longer is
-  none of them. Infinite without lamps, and where one may be dark for so short that every line sees more light
-  than half.
+  none of them. Infinite without lamps, and where one may be dark for so short that every line sees some
+  light.
 */
 double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig);
 
