@@ -292,7 +292,10 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   if (!profile.light.empty() && vpLongestLit(profile) > longestPeriod) {
     return {};
   }
-  const vpStripeFeatures features = stripeAnalyzer.analyze(profile);
+  vpStripeAnalyzer analyzer = stripeAnalyzer;
+  analyzer.searchUnknownWords =
+      analyzer.searchUnknownWords && fit.sound; // parts of a lamp show no whole word
+  const vpStripeFeatures features = analyzer.analyze(profile);
   static const double explained = 0.01; // misfit
   const bool tells = vpLedIdEvidence::tells(features);
   if ((tells && features.misfit < explained) ||
@@ -318,7 +321,9 @@ vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, cons
   }
   agreed.exposure = m_exposure.exposure();
   agreed.logExposureSigma = m_exposure.logSigma();
-  const vpStripeFeatures features = stripeAnalyzer.analyze(agreed);
+  vpStripeAnalyzer analyzer = stripeAnalyzer;
+  analyzer.searchUnknownWords = false;
+  const vpStripeFeatures features = analyzer.analyze(agreed);
   if (!vpPatchwork::isLamp(features) || features.signal == vpStripeFeatures::Signal::coded) {
     return features.signal == vpStripeFeatures::Signal::coded ? features : vpStripeFeatures();
   }

@@ -87,13 +87,13 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
   static const double exposureTolerance = 0.5;            // of its logarithm
   const double tolerance = std::hypot(exposureTolerance, profile.logExposureSigma);
   const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, tolerance}, envelope);
-  const bool neither = !(unexplained < analyzer.maxMisfit);
+  const bool neither = !(unexplained < analyzer.maxMisfit), unknown = analyzer.searchUnknownWords && neither;
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
   // A word without a name has two pulses or more, and fewer than three stripes would repeat none of them; its
   // lamp is off between them.
   static const size_t fewest = 3;
   static const double off = 0.7; // depth
-  if (neither && stripes >= fewest && profile.depth() > off && (!word || word->inflation > explained)) {
+  if (unknown && stripes >= fewest && profile.depth() > off && (!word || word->inflation > explained)) {
     const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
     static const double clearlyLess = 0.8;
     if (!word || (other && other->inflation < clearlyLess * word->inflation)) {

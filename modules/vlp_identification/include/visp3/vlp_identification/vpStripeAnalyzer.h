@@ -87,10 +87,11 @@ public:
   //! is sought below. Between the little that there is: pwm lamps of phones leave up to 0.09, coded lamps
   //! seen for less than a word from 0.165 on.
   double maxMisfit = 0.13;
-  double minAgreement = 0.85;  // of the halves of lines: what varies along a line is no shutter's work
-  double minModulation = 0.05; // depth of stripes below which a lamp counts as unmodulated
-  bool searchTwoPulses = true; // off where no lamp of the map is one: a search of tens of milliseconds
-  double minSignificance = 30; // gain in chi-square by which a sinusoid has to beat a plain lamp
+  double minAgreement = 0.85;     // of the halves of lines: what varies along a line is no shutter's work
+  double minModulation = 0.05;    // depth of stripes below which a lamp counts as unmodulated
+  bool searchUnknownWords = true; // of formats that are not in `words`: a search of tenths of a second
+  bool searchTwoPulses = true;    // off where no lamp of the map is one: a search of tens of milliseconds
+  double minSignificance = 30;    // gain in chi-square by which a sinusoid has to beat a plain lamp
 
   double minWordConfidence = 0.99; // probability that all chips of a word are right below which none is given
   std::vector<vpWordFormat> words; // that the map's lamps send; of other formats it takes more to be sure
