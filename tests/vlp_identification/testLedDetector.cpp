@@ -12,6 +12,7 @@
 
 #include "common/vpExpectError.h"
 #include "common/vpLampPicture.h"
+#include "common/vpPwmLamps.h"
 #include "common/vpUpwardRig.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
@@ -23,15 +24,7 @@ namespace
 
 vpLampMap map()
 {
-  vpLampMap map;
-  for (double frequency : {2000, 2600, 3500}) {
-    vpLamp lamp;
-    lamp.id = "L" + std::to_string(static_cast<int>(frequency));
-    lamp.modulation.kind = vpModulation::Kind::pwm;
-    lamp.modulation.frequency = frequency;
-    map.lamps.push_back(lamp);
-  }
-  return map;
+  return vpPwmLamps({2000, 2600, 3500});
 }
 
 vpPaintedLamp lamp(double u, double v, double frequency, double duty = 0.5)

@@ -13,6 +13,7 @@
 #include <opencv2/imgproc.hpp>
 #include <visp3/vlp_identification/vpLedDetector.h>
 
+#include "common/vpPwmLamps.h"
 #include "common/vpUpwardRig.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
@@ -76,15 +77,7 @@ vpImage<unsigned char> pictureOf(const std::vector<Luminaire> &lamps, double noi
 
 vpLampMap map()
 {
-  vpLampMap map;
-  for (const double frequency : {1500, 2000, 2600}) {
-    vpLamp lamp;
-    lamp.id = "L" + std::to_string(static_cast<int>(frequency));
-    lamp.modulation.kind = vpModulation::Kind::pwm;
-    lamp.modulation.frequency = frequency;
-    map.lamps.push_back(lamp);
-  }
-  return map;
+  return vpPwmLamps({1500, 2000, 2600});
 }
 
 std::vector<vpLampObservation> seenIn(const std::vector<Luminaire> &lamps)
