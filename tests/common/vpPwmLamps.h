@@ -10,6 +10,8 @@
 
 #include <visp3/vlp_core/vpLampMap.h>
 
+BEGIN_VISP_NAMESPACE
+
 //! Lamps of one pulse a period, Hz, of a duty that is not stated: L1500 is that of 1500 Hz.
 inline vpLampMap vpPwmLamps(const std::vector<double> &frequencies)
 {
@@ -23,5 +25,7 @@ inline vpLampMap vpPwmLamps(const std::vector<double> &frequencies)
   }
   return map;
 }
+
+END_VISP_NAMESPACE
 
 #endif
