@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "vpLampConsensus.h"
 #include "vpLampGeometry.h"
@@ -57,41 +58,64 @@ vpVlpLocation vpVlpLocalizer::process(const vpVlpFrame &frame)
 
 void vpVlpLocalizer::process(const vpVlpFrame &frame, vpVlpLocation &location)
 {
-  location.timestamp = frame.timestamp;
-  location.tracked = false;
-  location.state = vpVlpFilter::State::starting;
-  clear(location.fix);
-  if (tracking && !inOrder(frame.timestamp)) {
-    location.observations.clear();
-    location.searched.clear();
-    location.fix.refusal = "the frame is not later than the one before it";
+  if (!open(frame.timestamp, location)) {
     return;
   }
-  if (filter.started() && filter.state(filterAt(frame.timestamp).pose()) == vpVlpFilter::State::lost) {
-    filter.stop(); // so long ago that what it expects of the lamps would mean nothing
-  }
-
   // Sections 2.1.1 and 2.1.2: LED-ROI, outline, stripe features and LED-ID of every lamp-like region, in the
   // windows of the lamps that are followed and where new ones are searched for.
   location.observations = look(frame);
-  location.searched.clear();
   if (tracking) {
     location.searched = tracker.searched();
   }
+  // Section 2.1.3: the pose from the rays to these lamps.
+  locate(location);
+}
 
+vpVlpLocation vpVlpLocalizer::locate(double timestamp, std::vector<vpLampObservation> observations)
+{
+  vpVlpLocation location;
+  if (open(timestamp, location)) {
+    location.observations = std::move(observations);
+    locate(location);
+  }
+  return location;
+}
+
+//! Makes the location one of a frame that is still to be seen. False: such a frame cannot be used.
+bool vpVlpLocalizer::open(double time, vpVlpLocation &location)
+{
+  location.timestamp = time;
+  location.tracked = false;
+  location.state = vpVlpFilter::State::starting;
+  location.searched.clear();
+  clear(location.fix);
+  if (tracking && !inOrder(time)) {
+    location.observations.clear();
+    location.fix.refusal = "the frame is not later than the one before it";
+    return false;
+  }
+  if (filter.started() && filter.state(filterAt(time).pose()) == vpVlpFilter::State::lost) {
+    filter.stop(); // so long ago that what it expects of the lamps would mean nothing
+  }
+  return true;
+}
+
+//! The pose from the rays to the lamps that were seen.
+void vpVlpLocalizer::locate(vpVlpLocation &location)
+{
   // Lamps whose place in the picture can be relied on, and whose id can, once places have told apart what
   // stripes do not: lamps that share an identifier, a lamp and its reflection.
   std::vector<size_t> &usable = m_scratch->usable;
   vpLampConsensus::usable(location.observations, usable);
   std::string doubt;
   if (!namedApart(location.observations, usable)) {
-    const vpLampMatch match = matchByPlace(location.observations, usable, frame.timestamp);
+    const vpLampMatch match = matchByPlace(location.observations, usable, location.timestamp);
     nameByPlace(match, m_map, location.observations, usable);
     doubt = match.refusal;
   }
 
-  // Section 2.1.3: the pose from the rays to these lamps: each corrects the one that the filter carries, or,
-  // at first, two or all that agree with each other.
+  // Each ray corrects the pose that the filter carries, or, at first, two or all that agree with each other
+  // tell it.
   const bool carried = tracking && filter.started();
   if (carried) {
     follow(location, usable);
@@ -106,7 +130,7 @@ void vpVlpLocalizer::process(const vpVlpFrame &frame, vpVlpLocation &location)
       m_lastPose.emplace();
     }
     m_lastPose->fix = location.fix;
-    m_lastPose->time = frame.timestamp;
+    m_lastPose->time = location.timestamp;
   }
   location.tracked = carried && filter.started() && m_followed > 0 && location.fix.valid;
   location.state = filter.state(location.fix);

@@ -83,6 +83,13 @@ public:
   //! The same into what an earlier frame gave: where lamps are followed it takes no memory.
   void process(const vpVlpFrame &frame, vpVlpLocation &location);
 
+  /*!
+    The same of lamps that somebody else has seen, their ids told: another detector, a node of its own, a
+    simulation. \param timestamp s, of the frame's first line. \param observations Their `time` counts from
+    there; `id`, `point`, `covariance`, `outline` and `cut` are looked at.
+  */
+  vpVlpLocation locate(double timestamp, std::vector<vpLampObservation> observations);
+
 private:
   struct Scratch;
   struct LastPose {
@@ -112,6 +119,8 @@ private:
   static std::vector<size_t> membersOf(const vpVlpLocation &location);
   void addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const;
   bool startAt(const vpVlpLocation &location);
+  bool open(double time, vpVlpLocation &location);
+  void locate(vpVlpLocation &location);
   bool inOrder(double time);
   const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
   const std::vector<vpRect> &expectedWindows(double time) const;

@@ -1,0 +1,116 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// A robot that is put elsewhere between two frames: the lamps' middles are simulated, no picture is
+// (vpSeenLamps). bench_jumps [JUMPS of each row] (500)
+
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "vpSeenLamps.h"
+#include "vpSimulatedStripes.h"
+
+namespace
+{
+struct Outcome {
+  int jumps = 0, frames = 0, fixes = 0;
+  int beyond = 0;      // poses beyond five of their standard deviations
+  int late = 0;        // jumps after which the third frame has no pose within a centimetre
+  double worst = 0;    // standard deviations
+  double farthest = 0; // m, error of such a pose
+};
+
+//! Of x, y and yaw the one that is farthest off, in its standard deviations.
+double sigmasOff(const vpVlpFix &fix, const vpPlannedPlace &truth, double &error)
+{
+  const double x = fix.wMb[0][3] - truth.x, y = fix.wMb[1][3] - truth.y,
+               turn = std::remainder(std::atan2(fix.wMb[1][0], fix.wMb[0][0]) - truth.yaw, 2 * M_PI);
+  error = std::hypot(x, y);
+  return std::max({std::abs(x) / std::sqrt(fix.covariance(0, 0)),
+                   std::abs(y) / std::sqrt(fix.covariance(1, 1)),
+                   std::abs(turn) / std::sqrt(fix.covariance(5, 5))});
+}
+
+Outcome jump(size_t lamps, double framesPerSecond, bool driving, std::mt19937_64 &generator)
+{
+  std::uniform_real_distribution<double> uniform;
+  const double far = 0.01 + 0.34 * uniform(generator), where = 2 * M_PI * uniform(generator),
+               turn = (uniform(generator) - 0.5) * M_PI;
+  const vpPlannedPlace start{0.2 * (uniform(generator) - 0.5), 0.2 * (uniform(generator) - 0.5),
+                             2 * M_PI * uniform(generator)};
+  const vpPlannedDrive path(start, {{4, driving ? 0.1 : 0, driving ? 0.3 : 0}});
+  const int before = 12, after = 8;                   // frames
+  const double at = (before - 0.2) / framesPerSecond; // s, when it is put elsewhere
+  const vpPlannedPlace from = path.at(at);
+  const auto place = [&](double t) {
+    vpPlannedPlace p = path.at(t);
+    if (t >= at) {
+      const Eigen::Vector2d turned = Eigen::Rotation2Dd(turn) * Eigen::Vector2d(p.x - from.x, p.y - from.y);
+      p.x = from.x + turned.x() + far * std::cos(where);
+      p.y = from.y + turned.y() + far * std::sin(where);
+      p.yaw += turn;
+    }
+    return p;
+  };
+  const vpSeenLamps world(lamps);
+  vpVlpLocalizer localizer(world.rig, world.map);
+  Outcome outcome;
+  outcome.jumps = 1;
+  for (int k = 0; k < before + after; ++k) {
+    const double t = k / framesPerSecond;
+    const vpVlpLocation location = localizer.locate(t, world.see(t, place, generator));
+    double error = 1;
+    const double off = location.fix.valid ? sigmasOff(location.fix, place(t), error) : 0;
+    ++outcome.frames;
+    outcome.fixes += location.fix.valid;
+    outcome.worst = std::max(outcome.worst, off);
+    static const double most = 5; // standard deviations
+    if (off > most) {
+      ++outcome.beyond;
+      outcome.farthest = std::max(outcome.farthest, error);
+    }
+    static const double right = 0.01; // m
+    outcome.late += k == before + 2 && !(error < right);
+  }
+  return outcome;
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const int jumps = argc > 1 ? std::max(1, std::atoi(argv[1])) : 500;
+  std::printf("Jumps of 1 to 35 cm and up to 90 degrees; rig and map exact; poses of all frames, 12 before "
+              "the jump and 8 "
+              "after it.\n\n| lamps | frames a second | robot | jumps | frames with a pose, %% | beyond 5 "
+              "sigma | worst, "
+              "sigma | farthest of these, mm | not right in the third frame "
+              "|\n|---|---|---|---|---|---|---|---|---|\n");
+  for (const size_t lamps : {2, 3, 4}) {
+    for (const double rate : {10., 12.}) {
+      for (const bool driving : {false, true}) {
+        Outcome all;
+        std::mutex mutex;
+        vpRunTrials(jumps, [&](int, std::mt19937_64 &generator) {
+          const Outcome one = jump(lamps, rate, driving, generator);
+          const std::lock_guard<std::mutex> lock(mutex);
+          all.jumps += one.jumps;
+          all.frames += one.frames;
+          all.fixes += one.fixes;
+          all.beyond += one.beyond;
+          all.late += one.late;
+          all.worst = std::max(all.worst, one.worst);
+          all.farthest = std::max(all.farthest, one.farthest);
+        });
+        std::printf("| %zu | %g | %s | %d | %.1f | %d | %.1f | %.1f | %d |\n", lamps, rate,
+                    driving ? "drives" : "stands", all.jumps, 100. * all.fixes / all.frames, all.beyond,
+                    all.worst, 1000 * all.farthest, all.late);
+        std::fflush(stdout);
+      }
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,205 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// What odometry makes of the poses, right and wrong, beside the same frames without it: the lamps' middles
+// are simulated, no picture is (vpSeenLamps). bench_sources [SEEDS] (8)
+
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "vpSeenLamps.h"
+#include "vpSimulatedStripes.h"
+
+namespace
+{
+const double framesPerSecond = 12;
+const double offFrom = 1; // s, from when on a source is off, or only one lamp is left
+
+struct Drive {
+  std::string name;
+  std::vector<vpPlannedLeg> legs;
+  vpPlannedPlace start;
+};
+
+const std::vector<Drive> drives = {
+    {"straight", {{0.5, 0, 0}, {4, 0.2, 0}, {0.5, 0, 0}}, {-0.4, 0.05, 0}},
+    {"curve", {{0.5, 0, 0}, {4, 0.15, 0.6}, {0.5, 0, 0}}, {-0.2, -0.3, 0}},
+    {"square",
+     {{0.3, 0, 0}, {1.5, 0.2, 0}, {1.57, 0, 1}, {1.5, 0.2, 0}, {1.57, 0, 1}, {1.5, 0.2, 0}, {0.3, 0, 0}},
+     {-0.15, -0.15, 0}},
+    {"spin", {{0.5, 0, 0}, {4, 0, 1}, {0.5, 0, 0}}, {0.05, 0.05, 0}},
+};
+
+//! What is wrong with the wheels.
+struct Fault {
+  std::string name;
+  double heading = 0; // rad, that the way has in the base's frame
+  std::function<void(std::vector<vpOdometry> &)> apply = [](std::vector<vpOdometry> &) {};
+};
+
+Fault scaled(double by)
+{
+  return {"scaled by " + std::to_string(by).substr(0, 3), 0, [by](std::vector<vpOdometry> &samples) {
+            for (vpOdometry &sample : samples) {
+              sample.v *= by;
+              sample.w *= by;
+            }
+          }};
+}
+
+std::vector<Fault> faults()
+{
+  std::vector<Fault> all{{"right"}, scaled(0.8), scaled(1.2), {"turned by 5 degrees", 5 * M_PI / 180}};
+  all.push_back({"late by 0.2 s", 0, [](std::vector<vpOdometry> &samples) {
+                   for (vpOdometry &sample : samples) {
+                     sample.timestamp += 0.2;
+                   }
+                 }});
+  all.push_back({"frozen from 1 s on", 0, [](std::vector<vpOdometry> &samples) {
+                   const vpOdometry *last = nullptr;
+                   for (vpOdometry &sample : samples) {
+                     if (sample.timestamp < offFrom) {
+                       last = &sample;
+                     } else if (last != nullptr) {
+                       sample.v = last->v;
+                       sample.w = last->w;
+                     }
+                   }
+                 }});
+  all.push_back({"sign turned", 0, [](std::vector<vpOdometry> &samples) {
+                   for (vpOdometry &sample : samples) {
+                     sample.v = -sample.v;
+                     sample.w = -sample.w;
+                   }
+                 }});
+  all.push_back({"a wheel slips from 2 to 4 s", 0, [](std::vector<vpOdometry> &samples) {
+                   static const double faster = 0.1, track = 0.16; // m/s, m: it turns without a grip
+                   for (vpOdometry &sample : samples) {
+                     if (sample.timestamp > 2 && sample.timestamp < 4) {
+                       sample.v += 0.5 * faster;
+                       sample.w += faster / track;
+                     }
+                   }
+                 }});
+  all.push_back({"gyro bias of 5 degrees/s", 0, [](std::vector<vpOdometry> &samples) {
+                   for (vpOdometry &sample : samples) {
+                     sample.w += 5 * M_PI / 180;
+                   }
+                 }});
+  return all;
+}
+
+//! Of one run.
+struct Errors {
+  double sum = 0, nees = 0; // m, horizontal; of x and y
+  int frames = 0, fixes = 0;
+
+  void add(const Errors &other)
+  {
+    sum += other.sum;
+    nees += other.nees;
+    frames += other.frames;
+    fixes += other.fixes;
+  }
+  double mean() const { return 1000 * sum / fixes; }
+};
+
+Errors run(const Drive &drive, const Fault &fault, size_t lamps, double proud, bool odometry,
+           std::mt19937_64 generator)
+{
+  vpSeenLamps world(std::max<size_t>(2, lamps));
+  if (proud > 0) {
+    world.claim(proud, generator);
+  }
+  const vpPlannedDrive path(drive.start, drive.legs, fault.heading);
+  std::vector<vpOdometry> samples = path.odometry(0.02);
+  std::normal_distribution<double> normal;
+  for (vpOdometry &sample : samples) {
+    sample.v += 0.002 * normal(generator); // m/s, of encoder ticks
+    sample.w += 0.003 * normal(generator); // rad/s
+  }
+  fault.apply(samples);
+  vpVlpLocalizer localizer(world.rig, world.map);
+  Errors errors;
+  size_t given = 0;
+  for (double t = 0; t < path.duration(); t += 1 / framesPerSecond) {
+    static const double read = 0.08; // s after the time stamp: by then the frame is there
+    for (; odometry && given < samples.size() && samples[given].timestamp <= t + read; ++given) {
+      localizer.filter.addOdometry(samples[given]);
+    }
+    const std::vector<bool> lit{true, lamps > 1 || t < offFrom};
+    const auto place = [&path](double at) { return path.at(at); };
+    const vpVlpLocation location = localizer.locate(t, world.see(t, place, generator, lit));
+    if (t < offFrom) {
+      continue;
+    }
+    ++errors.frames;
+    if (!location.fix.valid) {
+      continue;
+    }
+    const vpPlannedPlace truth = path.at(t);
+    const Eigen::Vector2d off(location.fix.wMb[0][3] - truth.x, location.fix.wMb[1][3] - truth.y);
+    ++errors.fixes;
+    errors.sum += off.norm();
+    errors.nees += off.dot(location.fix.covariance.topLeftCorner<2, 2>().inverse() * off);
+  }
+  return errors;
+}
+
+Errors runs(const Drive &drive, const Fault &fault, size_t lamps, double proud, bool odometry, int seeds)
+{
+  std::vector<Errors> all(static_cast<size_t>(seeds));
+  vpRunTrials(seeds, [&](int seed, std::mt19937_64 &generator) {
+    all[static_cast<size_t>(seed)] = run(drive, fault, lamps, proud, odometry, generator);
+  });
+  Errors sum;
+  for (const Errors &errors : all) {
+    sum.add(errors);
+  }
+  return sum;
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const int seeds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 8;
+  std::printf(
+      "Mean horizontal error, mm, without odometry -> with it; mean NEES of x and y with it (2 is right); "
+      "frames with a pose, %%, with it where not all.\n\n");
+  for (const double proud : {0., 1., 2., 5.}) {
+    std::printf("Errors of rig and map: %g times what they state%s\n\n", proud,
+                proud == 0 ? ", which is exact" : "");
+    std::printf(
+        "| drive | odometry | four lamps | two lamps | one lamp from 1 s on |\n|---|---|---|---|---|\n");
+    int worse = 0, cells = 0;
+    for (const Drive &drive : drives) {
+      for (const Fault &fault : faults()) {
+        std::printf("| %s | %s |", drive.name.c_str(), fault.name.c_str());
+        for (const size_t lamps : {4, 2, 1}) {
+          const Errors without = runs(drive, fault, lamps, proud, false, seeds),
+                       with = runs(drive, fault, lamps, proud, true, seeds);
+          const bool bad = lamps > 1 && (with.mean() > 1.5 * without.mean() || with.fixes < without.fixes);
+          cells += lamps > 1;
+          worse += bad;
+          std::printf(" %s%.3f -> %.3f%s; %.1f", bad ? "**" : "", without.mean(), with.mean(),
+                      bad ? "**" : "", with.nees / with.fixes);
+          if (with.fixes < with.frames) {
+            std::printf("; %.0f %%", 100. * with.fixes / with.frames);
+          }
+          std::printf(" |");
+        }
+        std::printf("\n");
+        std::fflush(stdout);
+      }
+    }
+    std::printf("\nWorse than 1.5 times the error without odometry: %d of %d with two lamps or more.\n\n",
+                worse, cells);
+  }
+  return 0;
+}
