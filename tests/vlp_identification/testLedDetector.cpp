@@ -208,6 +208,29 @@ TEST(LedDetector, SteadyLightNeedsNoOutline)
 
 // Stripes that hardly show, as of an exposure of nearly a period: no first look may take them for steady
 // light.
+// Light on end is steady where each lamp of the map would show it its dark time, longer than a line and an
+// exposure (40 us each, the latter known to a factor of two or exactly).
+TEST(LedDetector, LongestPeriodIsKnownWhereEachLampShowsItsDark)
+{
+  auto longest = [](double frequency, double duty, vpModulation::Kind kind, double exposureSigma) {
+    vpVlpRig rig = vpUpwardRig(400, 320);
+    rig.shutter.exposureSigma = exposureSigma;
+    vpLampMap map = vpPwmLamps({frequency});
+    map.lamps[0].modulation.kind = kind;
+    map.lamps[0].modulation.duty = duty;
+    return vpLedDetector(rig, map).longestPeriod;
+  };
+  const vpModulation::Kind pwm = vpModulation::Kind::pwm, two = vpModulation::Kind::twoPulse;
+  EXPECT_GE(longest(5000, 0.5, pwm, 0), 200e-6); // dark for 100 us
+  EXPECT_LT(longest(5000, 0.5, pwm, 0), 300e-6);
+  EXPECT_TRUE(std::isinf(longest(7000, 0.5, pwm, 0)));     // for 71 us
+  EXPECT_TRUE(std::isinf(longest(5000, 0.5, two, 0)));     // for 50 us
+  EXPECT_TRUE(std::isinf(longest(5000, 0.5, pwm, 40e-6))); // an exposure of 80 us may hide it
+  vpVlpRig untimed = vpUpwardRig(400, 320);
+  untimed.shutter.rowTime = 0;
+  EXPECT_TRUE(std::isinf(vpLedDetector(untimed, vpPwmLamps({1000})).longestPeriod));
+}
+
 TEST(LedDetector, FaintStripesAreNoSteadyLight)
 {
   for (const double amplitude : {60.0, 150.0}) {

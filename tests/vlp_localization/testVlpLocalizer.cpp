@@ -79,6 +79,26 @@ TEST(VlpLocalizer, MillimetreFromAllLampsWithinItsCovariance)
   EXPECT_LT(nees, 4); // 2 expected; 99.9 % of the means of 20 lie below 3.6
 }
 
+// Whoever has seen the lamps, the pose is the same, also of observations that have been through it before.
+TEST(VlpLocalizer, LampsThatAreSeenAlreadyGiveThePoseOfTheirPicture)
+{
+  const Room room;
+  vpVlpLocalizer ofPictures(room.rig(), room.map), ofLamps(room.rig(), room.map);
+  for (unsigned int k = 1; k <= 4; ++k) {
+    vpVlpFrame frame = room.frame(k);
+    frame.timestamp = 0.1 * k;
+    const vpVlpLocation seen = ofPictures.process(frame),
+                        located = ofLamps.locate(frame.timestamp, seen.observations);
+    ASSERT_TRUE(located.fix.valid) << k << ": " << located.fix.refusal;
+    EXPECT_EQ(located.fix.lamps, seen.fix.lamps) << k;
+    EXPECT_EQ(located.tracked, k > 1) << k;
+    for (unsigned int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(located.fix.wMb[i][3], seen.fix.wMb[i][3], 1e-12) << k;
+    }
+  }
+  EXPECT_FALSE(ofLamps.locate(0.4, {}).fix.valid) << "not later than the one before";
+}
+
 TEST(VlpLocalizer, TwoSolverUsesTwoLamps)
 {
   const Room room;

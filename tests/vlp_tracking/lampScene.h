@@ -18,6 +18,7 @@
 #include <visp3/vlp_tracking/vpLampTracker.h>
 
 #include "common/vpLampPicture.h"
+#include "common/vpPwmLamps.h"
 #include "common/vpUpwardRig.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
@@ -64,18 +65,7 @@ public:
     return rig;
   }
 
-  static vpLampMap map()
-  {
-    vpLampMap map;
-    for (const double frequency : {2000.0, 2600.0, 3500.0, 4400.0}) {
-      vpLamp lamp;
-      lamp.id = idOf(frequency);
-      lamp.modulation.kind = vpModulation::Kind::pwm;
-      lamp.modulation.frequency = frequency;
-      map.lamps.push_back(lamp);
-    }
-    return map;
-  }
+  static vpLampMap map() { return vpPwmLamps({2000, 2600, 3500, 4400}); }
 
   vpLampTracker tracker() const { return vpLampTracker(rig(), map()); }
 

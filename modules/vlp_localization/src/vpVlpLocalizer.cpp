@@ -76,6 +76,10 @@ vpVlpLocation vpVlpLocalizer::locate(double timestamp, std::vector<vpLampObserva
   vpVlpLocation location;
   if (open(timestamp, location)) {
     location.observations = std::move(observations);
+    for (vpLampObservation &seen : location.observations) {
+      seen.accepted = false;
+      seen.remark.clear();
+    }
     locate(location);
   }
   return location;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -20,6 +19,7 @@
 #include "stripes/vpStripeStarts.h"
 #include "vpSeenRegion.h"
 #include "vpTransposed.h"
+#include "words/vpWordFormats.h"
 #include <visp3/vlp_core/vpBrighter.h>
 
 BEGIN_VISP_NAMESPACE
@@ -114,31 +114,6 @@ void doubtClipped(vpLampObservation &lamp)
   }
 }
 
-//! How the map's words are sent, each way once.
-std::vector<vpWordFormat> formatsOf(const vpLampMap &map, const vpRollingShutter &shutter)
-{
-  const double rowTime = shutter.rowTime > 0 ? shutter.rowTimeSigma / shutter.rowTime : 0;
-  std::vector<vpWordFormat> formats;
-  for (const vpLamp &lamp : map.lamps) {
-    const vpModulation &sent = lamp.modulation;
-    if (sent.kind != vpModulation::Kind::word) {
-      continue;
-    }
-    const size_t chips = sent.chips().size();
-    const auto same =
-        std::find_if(formats.begin(), formats.end(), [&sent, chips](const vpWordFormat &format) {
-          return format.chips == chips && format.chipRate == sent.chipRate;
-        });
-    const double tolerance = std::hypot(rowTime, 1e-6 * lamp.oscillatorPpm);
-    if (same == formats.end()) {
-      formats.push_back({chips, sent.chipRate, tolerance});
-    } else {
-      same->tolerance = std::max(same->tolerance, tolerance);
-    }
-  }
-  return formats;
-}
-
 std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
 {
   std::vector<vpImagePoint> corners;
@@ -169,7 +144,7 @@ vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
   stripeAnalyzer.searchTwoPulses = std::any_of(map.lamps.begin(), map.lamps.end(), [](const vpLamp &lamp) {
     return lamp.modulation.kind == vpModulation::Kind::twoPulse;
   });
-  stripeAnalyzer.words = formatsOf(map, rig.shutter);
+  stripeAnalyzer.words = vpWordFormatsOf(map, rig.shutter);
 }
 
 void vpLedDetector::check(const vpImage<unsigned char> &I) const
@@ -283,20 +258,26 @@ void vpLedDetector::recognise(std::vector<Region> &regions)
   }
 }
 
+//! What a profile says under the exposure as it is known. \param unknownWords Whether words of formats that
+//! the map does not have are looked for.
+vpStripeFeatures vpLedDetector::analyzed(vpStripeProfile profile, bool unknownWords) const
+{
+  profile.exposure = m_exposure.exposure();
+  profile.logExposureSigma = m_exposure.logSigma();
+  vpStripeAnalyzer analyzer = stripeAnalyzer;
+  analyzer.searchUnknownWords = analyzer.searchUnknownWords && unknownWords;
+  return analyzer.analyze(profile);
+}
+
 vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
                                           const vpLedRoi &roi) const
 {
-  vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
-  profile.exposure = m_exposure.exposure();
-  profile.logExposureSigma = m_exposure.logSigma();
+  const vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
   if (!profile.light.empty() && vpLongestLit(profile) > longestPeriod) {
     return {};
   }
-  vpStripeAnalyzer analyzer = stripeAnalyzer;
-  analyzer.searchUnknownWords =
-      analyzer.searchUnknownWords && fit.sound; // parts of a lamp show no whole word
-  const vpStripeFeatures features = analyzer.analyze(profile);
-  static const double explained = 0.01; // misfit
+  const vpStripeFeatures features = analyzed(profile, fit.sound); // parts of a lamp show no whole word
+  static const double explained = 0.01;                           // misfit
   const bool tells = vpLedIdEvidence::tells(features);
   if ((tells && features.misfit < explained) ||
       features.modulation < (tells ? stripeAnalyzer.minModulation : vpPatchwork::least)) {
@@ -314,16 +295,12 @@ vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, cons
                                               const vpLedRoi &roi) const
 {
   static const double unlike = 0.2; // depth
-  vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
+  const vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
   if (vpStripeStarts::peaks(agreed).size() < vpPatchwork::fewestStripes ||
       agreed.depth() < vpPatchwork::least) {
     return {};
   }
-  agreed.exposure = m_exposure.exposure();
-  agreed.logExposureSigma = m_exposure.logSigma();
-  vpStripeAnalyzer analyzer = stripeAnalyzer;
-  analyzer.searchUnknownWords = false;
-  const vpStripeFeatures features = analyzer.analyze(agreed);
+  const vpStripeFeatures features = analyzed(agreed, false);
   if (!vpPatchwork::isLamp(features) || features.signal == vpStripeFeatures::Signal::coded) {
     return features.signal == vpStripeFeatures::Signal::coded ? features : vpStripeFeatures();
   }

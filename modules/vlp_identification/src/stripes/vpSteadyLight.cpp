@@ -97,11 +97,16 @@ double vpLongestLit(const vpStripeProfile &profile)
 double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig)
 {
   static const double blur = 0.2, sigmas = 5, never = std::numeric_limits<double>::infinity();
+  const vpRollingShutter &shutter = rig.shutter;
+  if (!(shutter.rowTime > 0)) {
+    return never;
+  }
   // The darkest line lies half a line off the dark time's middle at most: its whole exposure is dark where
   // that time is longer than both together.
-  const vpRollingShutter &shutter = rig.shutter;
-  const double rows = std::ceil(std::abs(rig.lineTiming().meanLineTime()) / shutter.rowTime), // of a line
-      shown = rows * shutter.rowTime + shutter.exposure * std::exp(shutter.logExposureSigma());
+  const vpLineTiming timing = rig.lineTiming();
+  const double rows = std::ceil(std::abs(timing.meanLineTime()) / shutter.rowTime), // of the farthest lines
+      exposure = std::hypot(timing.exposure(), timing.averaging()) * std::exp(timing.logExposureSigma()),
+               shown = rows * shutter.rowTime + exposure;
   double longest = map.lamps.empty() ? never : 0;
   for (const vpLamp &lamp : map.lamps) {
     const double dark = darkTime(lamp.modulation);

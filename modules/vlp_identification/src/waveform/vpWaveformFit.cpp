@@ -122,9 +122,11 @@ vpWaveformFit::Prior vpWaveformFit::prior(int parameter, const Vector &x) const
   case exposure: {
     // Student's t, its degrees of freedom those of the sum of a normal claim and of a lamp's own Cauchy
     // distribution (Welch 1947): a claim that is far more exact than it is true is forgiven.
+    static const double asNormal = 1e6; // degrees of freedom
     const double share = m_profile->logExposureSigma / m_settings.exposureTolerance,
-                 freedom = std::pow(1 + share * share, 2), log = std::log(x(exposure) / m_profile->exposure),
-                 perLog = m_logExposureSigma * x(exposure), square = std::pow(log / m_logExposureSigma, 2);
+                 freedom = std::min(std::pow(1 + share * share, 2), asNormal),
+                 log = std::log(x(exposure) / m_profile->exposure), perLog = m_logExposureSigma * x(exposure),
+                 square = std::pow(log / m_logExposureSigma, 2);
     return {(freedom + 1) * std::log1p(square / freedom),
             (freedom + 1) / (freedom + square) / (perLog * perLog), x(exposure) * (1 - log)};
   }

@@ -41,7 +41,7 @@ void vpWaveformFit::judgeResiduals()
   const double together = std::clamp((1 + alike) / std::max(1 - alike, 0.1), 1.0, 10.0);
   // A variance told from few residuals may be any.
   const double degrees = degreesOfFreedom();
-  // Timing is told by the lines in which light changes, and by those the model may be farther off.
+  // Timing is told by the lines in which light changes, which the model may be farther off (White 1980).
   const Eigen::ArrayXd timing = m_weight * (envelope() * m_wave.byTurn).square();
   const double atEdges =
       (timing * scaled.square()).sum() / std::max(timing.sum(), 1e-12) * static_cast<double>(scaled.size());

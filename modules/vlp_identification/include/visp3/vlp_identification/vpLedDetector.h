@@ -96,6 +96,7 @@ private:
   bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
   Region observe(const vpLinePicture &picture, const vpLedRoi &roi);
   void read(const vpLinePicture &picture, Region &region) const;
+  vpStripeFeatures analyzed(vpStripeProfile profile, bool unknownWords) const;
   vpStripeFeatures stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
                              const vpLedRoi &roi) const;
   vpStripeFeatures agreedStripes(const vpLinePicture &picture, const vpOutlineFit &fit,

@@ -84,9 +84,9 @@ public:
   void process(const vpVlpFrame &frame, vpVlpLocation &location);
 
   /*!
-    The same of lamps that somebody else has seen, their ids told: another detector, a node of its own, a
-    simulation. \param timestamp s, of the frame's first line. \param observations Their `time` counts from
-    there; `id`, `point`, `covariance`, `outline` and `cut` are looked at.
+    A pose from lamps that are seen already, by another detector or in a simulation; nothing else differs from
+    process(). \param timestamp s, of the frame's first line. \param observations Each with its `id` or
+    `candidates`, `point`, `covariance`, `outline`, `cut`, and its `time` since the time stamp.
   */
   vpVlpLocation locate(double timestamp, std::vector<vpLampObservation> observations);
 
