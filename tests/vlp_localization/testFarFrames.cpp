@@ -332,7 +332,7 @@ TEST(FarFrames, PointsThatAreOffAlikeInEveryFrameDoNotAverageOut)
       for (const vpLampSight &lamp : lamps) {
         filter.update(lamp);
       }
-      filter.settle(0, 4);
+      filter.calm(0.002);
       filter.conclude();
     }
     mean.add(lampScene::nees(filter.now(), drive.truth(0)));

@@ -323,7 +323,7 @@ TEST(VlpFilter, CovarianceStaysSymmetricAndNotNegative)
       if (random.uniform(0, 1) < 0.5) {
         filter.update(drive.sight(lamp, t));
       }
-      filter.settle(random.uniform(0, 4), 2);
+      filter.calm(random.uniform(0, 1));
       const vpVlpFix now = filter.now(), marked = filter.marked();
       ASSERT_TRUE(symmetricAndNotNegative(now.covariance)) << k;
       ASSERT_TRUE(symmetricAndNotNegative(marked.covariance)) << k;
@@ -332,24 +332,34 @@ TEST(VlpFilter, CovarianceStaysSymmetricAndNotNegative)
   }
 }
 
-TEST(VlpFilter, RestlessnessRisesWhereInnovationsAreBeyondChance)
+TEST(VlpFilter, MixtureHasTheMeanAndCovarianceOfItsParts)
 {
   Drive drive(1, stand);
-  vpVlpFilter calm(drive.rig());
-  drive.start(calm);
-  for (int k = 0; k < 60; ++k) {
-    drive.frame(calm, k * frameTime);
-    EXPECT_TRUE(calm.settle(8, 8)); // as expected of eight
+  vpVlpFilter before(drive.rig());
+  drive.start(before);
+  for (int k = 0; k < 10; ++k) {
+    drive.frame(before, k * frameTime);
   }
-  vpVlpFilter startled = calm;
-  EXPECT_FALSE(startled.settle(8 + 7 * std::sqrt(16.0), 8)); // seven standard deviations beyond
-  vpVlpFilter roused = calm;
-  roused.rouse();
-  for (vpVlpFilter *each : {&calm, &startled, &roused}) {
-    each->advance(each->time() + 0.5);
+  std::vector<vpVlpFilter> parts(2, before);
+  parts[0].calm(0.002);
+  parts[1].rouse();
+  for (vpVlpFilter &part : parts) {
+    drive.frame(part, 10 * frameTime);
   }
-  EXPECT_LT(placeSigma(calm.now()), placeSigma(startled.now()));
-  EXPECT_LT(placeSigma(startled.now()), placeSigma(roused.now()));
+  const vpVlpFix calm = parts[0].now(), roused = parts[1].now();
+  vpVlpFilter mixed = parts[0];
+  mixed.mix({&parts[0], &parts[1]}, {0.75, 0.25});
+  const vpVlpFix mixture = mixed.now();
+  for (unsigned int i = 0; i < 2; ++i) {
+    const double apart = calm.wMb[i][3] - roused.wMb[i][3];
+    EXPECT_NEAR(mixture.wMb[i][3], 0.75 * calm.wMb[i][3] + 0.25 * roused.wMb[i][3], 1e-12);
+    EXPECT_NEAR(mixture.covariance(i, i),
+                0.75 * calm.covariance(i, i) + 0.25 * roused.covariance(i, i) + 0.75 * 0.25 * apart * apart, 1e-15);
+  }
+  mixed = parts[1];
+  mixed.mix({&parts[0]}, {1});
+  EXPECT_LT(lampScene::poseError(mixed.now().wMb, calm.wMb).norm(), 1e-12);
+  EXPECT_LT((mixed.now().covariance - calm.covariance).norm(), 1e-15);
 }
 
 TEST(VlpFilter, DoubtedClaimsCountFromTheNextStartOn)

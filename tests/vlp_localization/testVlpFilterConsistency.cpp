@@ -154,7 +154,7 @@ TEST(VlpFilterConsistency, OneLampAloneForLongTellsNothingThatItDoesNotShow)
         filter.update(drive.sight(0, t));
         const double heading = std::sqrt(filter.now().covariance(5, 5));
         if (calming) {
-          filter.settle(0, 2);
+          filter.calm(0.03);
         } else { // nothing says that it goes on as before
           EXPECT_GT(heading, 0.97 * before) << k << ", seed " << seed;
         }

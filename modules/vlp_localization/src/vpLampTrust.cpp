@@ -135,6 +135,23 @@ std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &se
                            : "";
 }
 
+bool vpLampTrust::looksAsBefore(const vpLampFrame &frame, const vpHomogeneousMatrix &wMb) const
+{
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (unsigned int row = 0; row < 3; ++row) {
+    for (unsigned int column = 0; column < 4; ++column) {
+      pose(row, column) = wMb[row][column];
+    }
+  }
+  vpLampTrust asked = *this;         // which counts how often it is asked
+  static const double moving = 0.01; // stretch of a lamp by an unknown velocity, standard deviation
+  return std::all_of(frame.lamps.begin(), frame.lamps.end(), [&](const vpFrameLamp &lamp) {
+    const vpLampExtent expected = {
+        extentOf(*lamp.lamp, pose, Eigen::Vector3d::Zero(), *frame.rig, frame.lineTime), moving};
+    return !lamp.seen->accepted || asked.changed(*lamp.lamp, *lamp.seen, expected).empty();
+  });
+}
+
 bool vpLampTrust::knows(const vpLamp &lamp) const
 {
   const auto found = m_past.find(lamp.id);
@@ -147,12 +164,9 @@ bool vpLampTrust::doubts(const vpLamp &lamp) const
   return found != m_past.end() && found->second.doubted;
 }
 
-bool vpLampTrust::inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const
+double vpLampTrust::tolerance(const vpLamp &lamp) const
 {
-  vpVlpFilter::Innovation moved = innovation;
-  moved.ray -= offset(lamp);
-  const double tolerance = knows(lamp) ? placeTolerance : doubts(lamp) ? doubtedTolerance : mapTolerance;
-  return moved.distance(tolerance) < gate * gate;
+  return knows(lamp) ? placeTolerance : doubts(lamp) ? doubtedTolerance : mapTolerance;
 }
 
 Eigen::Vector2d vpLampTrust::offset(const vpLamp &lamp) const

@@ -12,6 +12,8 @@
 #include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_localization/vpVlpFilter.h>
 
+#include "vpLampFrame.h"
+
 BEGIN_VISP_NAMESPACE
 
 //! Of a lamp in the picture.
@@ -34,16 +36,19 @@ public:
   double doubtedTolerance = 0.005; // m, one that other lamps have shown to hang elsewhere, sigma
   double placeTolerance = 0.0005;  // m, how far one may then seem to move, sigma
   double sizeTolerance = 0.015; // share of its extent by which a lamp may seem smaller or larger than it was
-  double gate = 4;              // standard deviations
+  double gate = 4;              // standard deviations, of its extent
 
   //! Whether it is as large and of the shape as before; else why not, in a few words.
   std::string changed(const vpLamp &lamp, const vpLampObservation &seen, const vpLampExtent &expected);
 
+  //! Whether the lamps of a frame that are accepted look from \e wMb as large as before.
+  bool looksAsBefore(const vpLampFrame &frame, const vpHomogeneousMatrix &wMb) const;
+
   //! Whether it was seen in its place for some frames.
   bool knows(const vpLamp &lamp) const;
 
-  //! Whether it is where the filter expects it.
-  bool inPlace(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const;
+  //! m, how far it may seem to be from where the filter expects it, standard deviation.
+  double tolerance(const vpLamp &lamp) const;
 
   //! What it is off by on average, where that is more than chance, normalised units: to be added to its
   //! doubt.

@@ -79,7 +79,6 @@ void vpVlpFilter::mark(double time)
   if (!m_started) {
     return;
   }
-  m_moved = m_movable = 0;
   m_information.setZero();
   m_sights = 0;
   m_imageSpeed = 0;
@@ -100,8 +99,11 @@ Eigen::Index vpVlpFilter::lampIndex(const vpLampSight &lamp) const
   return found == m_lamps.end() ? -1 : lamps + 3 * (found - m_lamps.begin());
 }
 
-void vpVlpFilter::addLamp(const vpLampSight &lamp)
+void vpVlpFilter::expect(const vpLampSight &lamp)
 {
+  if (!m_started || !(placeSigma(lamp) > 0) || lampIndex(lamp) >= 0) {
+    return;
+  }
   const Eigen::Index n = m_x.size();
   m_x.conservativeResizeLike(Vector::Zero(n + 3));
   m_P.conservativeResizeLike(Matrix::Zero(n + 3, n + 3));
@@ -200,13 +202,10 @@ void vpVlpFilter::update(const vpLampSight &lamp)
   if (!m_started) {
     return;
   }
-  if (placeSigma(lamp) > 0 && lampIndex(lamp) < 0) {
-    addLamp(lamp);
-  }
+  expect(lamp);
   const Predicted predicted = predict(lamp);
   if (predicted.inFront) {
     const Innovation seen = innovation(lamp, predicted);
-    weighMotion(seen, lamp.covariance);
     weighNoise(seen, lamp.covariance);
     Eigen::Matrix<double, 4, 2> byPose = Eigen::Matrix<double, 4, 2>::Zero();
     for (int k = 0; k < predicted.H.count; ++k) {
@@ -222,6 +221,23 @@ void vpVlpFilter::update(const vpLampSight &lamp)
                                                         std::abs(m_x(w)) * predicted.ray.norm()));
     measure<2>(predicted.H, seen.ray, m_noise * lamp.covariance);
   }
+}
+
+/*!
+  What lamps' points scatter by, as a share of what they say: by the innovations of a calm robot, whose pose
+  rests on such points and is as good as they were (covariance matching, Mehra 1972).
+*/
+void vpVlpFilter::weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated)
+{
+  static const double calm = 0.03, noisy = 0.3; // share of the accelerations; of an innovation's variance
+  static const double believed = 10; // points, that what the first of them scatter by weighs as much as
+  static const double slowest = 0.02, outlying = 9, least = 0.25, most = 9;
+  if (m_unrest > calm || m_noise * stated.trace() < noisy * seen.covariance.trace()) {
+    return;
+  }
+  const double excess = 0.5 * std::min(seen.distance(0), outlying) - 1;
+  const double gain = std::max(slowest, 1 / (believed + ++m_weighed));
+  m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
 }
 
 template <int Values>
@@ -302,6 +318,26 @@ template void vpVlpFilter::measure<2>(const Derivative<2> &, const Eigen::Vector
                                       const Eigen::Matrix2d &);
 template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
                                       const Eigen::Matrix3d &);
+
+void vpVlpFilter::mix(const std::vector<const vpVlpFilter *> &parts, const std::vector<double> &weights)
+{
+  const auto aside = [this](const vpVlpFilter &part) {
+    Vector apart = part.m_x - m_x;
+    for (const Index first : {x, mark0}) {
+      apart(first + yaw) = std::remainder(apart(first + yaw), 2 * M_PI);
+    }
+    return apart;
+  };
+  Vector mean = Vector::Zero(m_x.size());
+  Matrix spread = Matrix::Zero(m_x.size(), m_x.size());
+  for (size_t k = 0; k < parts.size(); ++k) {
+    const Vector apart = aside(*parts[k]);
+    mean += weights[k] * apart;
+    spread += weights[k] * (parts[k]->m_P + apart * apart.transpose());
+  }
+  m_P = spread - mean * mean.transpose();
+  m_x += mean;
+}
 
 //! The pose in the state from there on.
 vpVlpFilter::Pose vpVlpFilter::poseOf(Index first) const

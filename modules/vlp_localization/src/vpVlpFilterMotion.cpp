@@ -49,6 +49,15 @@ void vpVlpFilter::addOdometry(const vpOdometry &sample)
   }
 }
 
+void vpVlpFilter::takeOdometry(const vpVlpFilter &other)
+{
+  for (const vpOdometry &sample : other.m_odometry) {
+    if (m_odometry.empty() || sample.timestamp > m_odometry.back().timestamp) {
+      m_odometry.push_back(sample);
+    }
+  }
+}
+
 //! The base on its arc for \e dt, its velocity constant; backwards where that is negative.
 void vpVlpFilter::arc(double dt)
 {
@@ -104,12 +113,12 @@ void vpVlpFilter::move(double dt, bool accelerates)
   }
 }
 
-//! The velocity is what the sample says of its interval, whatever it was before.
-void vpVlpFilter::followOdometry(const vpOdometry &before, const vpOdometry &sample)
+//! The velocity in the sample's interval: followed, it is that, whatever it was before.
+void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample)
 {
   static const double anySpeed = 1, anyTurn = 10; // m/s, rad/s: wheels start and stop within a sample
   for (int i : {vx, vy, w}) {
-    m_P(i, i) += square(i == w ? anyTurn : anySpeed);
+    m_P(i, i) += odometry == Odometry::followed ? square(i == w ? anyTurn : anySpeed) : 0;
   }
   const Eigen::RowVector3d forward = Eigen::RowVector3d::UnitX(), turning = Eigen::RowVector3d::UnitZ();
   Derivative<3> H;
@@ -150,15 +159,16 @@ void vpVlpFilter::advance(double time)
       continue;
     }
     const double until = std::min(time, end.timestamp);
-    if (end.timestamp - begin.timestamp > gap) {
-      wander(until);
-    } else {
-      if (m_followed != end.timestamp) {
-        followOdometry(begin, end);
-        m_followed = end.timestamp;
-      }
+    const bool tells = odometry != Odometry::ignored && !(end.timestamp - begin.timestamp > gap);
+    if (tells && m_followed != end.timestamp) {
+      useOdometry(begin, end);
+      m_followed = end.timestamp;
+    }
+    if (tells && odometry == Odometry::followed) {
       move(until - m_time, false);
       m_time = until;
+    } else {
+      wander(until);
     }
     if (m_time == end.timestamp) {
       m_odometry.erase(m_odometry.begin());

@@ -38,8 +38,6 @@ void vpVlpFilter::restart(const vpHomogeneousMatrix &wMb, double time)
 //! Starts from a pose, with the lamps that the state has.
 void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
 {
-  // Wide, yet linear: the lamps of the pose follow.
-  static const double place = 0.3, turn = 0.3; // m, rad
   const vpBasePose pose = vpBasePose::of(wMb);
   m_started = true;
   m_time = time;
@@ -50,10 +48,10 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   m_x(roll) = freeAttitude ? std::atan2(pose.wRb(2, 1), pose.wRb(2, 2)) : 0;
   m_x(pitch) = freeAttitude ? -std::asin(std::clamp(pose.wRb(2, 0), -1.0, 1.0)) : 0;
   Eigen::Matrix<double, lamps, 1> sigma = Eigen::Matrix<double, lamps, 1>::Zero();
-  sigma.head<3>().setConstant(place);
-  sigma(yaw) = turn;
+  sigma.head<3>().setConstant(startPlace);
+  sigma(yaw) = startTurn;
   sigma.segment<2>(roll) =
-      freeAttitude ? Eigen::Vector2d(turn, turn)
+      freeAttitude ? Eigen::Vector2d(startTurn, startTurn)
                    : Eigen::Vector2d(m_rig.rotationSigma.head<2>().array().square() + square(m_tiltDoubt))
                          .cwiseSqrt()
                          .eval();
@@ -71,10 +69,10 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   for (size_t k = 0; k < m_lamps.size(); ++k) {
     m_P.diagonal().segment<3>(lamps + 3 * static_cast<Eigen::Index>(k)).setConstant(square(m_placeSigmas[k]));
   }
-  static const double steady =
-      0.1; // its first two frames tell whether camera and map are as good as they say
-  m_unrest = steady;
-  forgetVelocity();
+  m_unrest = startShare;
+  for (int i : {vx, vy, w}) {
+    m_P(i, i) = square(i == w ? startTurnRate : startVelocity);
+  }
   m_aside = false;
   m_common.setZero();
   m_startX = m_x;
@@ -107,7 +105,7 @@ void vpVlpFilter::standAside(const Eigen::Matrix<double, 9, 1> &path)
 
 bool vpVlpFilter::linearizeAbout(const vpVlpFilter &corrected)
 {
-  if (m_odometry.size() > 1) {
+  if (odometry != Odometry::ignored && hasOdometry()) {
     return false;
   }
   const Eigen::Matrix<double, 9, 1> estimate = m_x.head<9>();
@@ -174,13 +172,6 @@ void vpVlpFilter::doubtClaims()
 {
   m_tiltDoubt = std::max(claimedTilt, 2 * m_tiltDoubt);
   m_placeDoubt = std::max(claimedPlace, 2 * m_placeDoubt);
-}
-
-void vpVlpFilter::forgetVelocity()
-{
-  for (int i : {vx, vy, w}) {
-    m_P(i, i) += square(i == w ? startTurnRate : startVelocity);
-  }
 }
 
 END_VISP_NAMESPACE

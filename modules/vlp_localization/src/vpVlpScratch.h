@@ -6,35 +6,40 @@
 #define vpVlpScratch_h
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
-#include "vpLampTrust.h"
+#include "vpLampFrame.h"
 
 BEGIN_VISP_NAMESPACE
-
-const double mostStrain = 8; // standard deviations, of vpVlpLocalizer::strain()
 
 /*!
   What vpVlpLocalizer works on within a frame, kept so that the next one takes no memory: each is assigned to
   before it is read, and none means anything from frame to frame.
 */
 struct vpVlpLocalizer::Scratch {
-  explicit Scratch(const vpVlpRig &rig) : there(rig), before(rig), alone(rig) {}
+  Scratch(const vpVlpRig &rig, const vpLampMap &map) : there(rig)
+  {
+    for (size_t i = 0; i < map.lamps.size(); ++i) {
+      lampOf.emplace(map.lamps[i].id, i);
+    }
+  }
 
-  vpVlpFilter there;  // filterAt()
-  vpVlpFilter before; // correctRestless(): what each attempt begins with,
-  vpLampTrust trusted;
-  std::vector<vpLampObservation> seen;
-  bool displaced = false; // correct(): a lamp counted for less, as it is not where the map has it
-  vpVlpFilter alone;      // strain()
-  std::vector<vpLampObservation> all, apart; // follow()
-  std::vector<size_t> usable;                // process()
-  std::vector<size_t> same;                  // unchanged()
-  std::vector<size_t> ordered;               // inTime()
-  std::vector<const vpLamp *> lamps;         // lampsOf()
-  std::vector<vpRect> windows;               // expectedWindows()
+  //! The map's lamp of an observation, by its id; nullptr: none.
+  const vpLamp *lamp(const vpLampMap &map, const vpLampObservation &observation) const
+  {
+    const auto found = lampOf.find(observation.id);
+    return found == lampOf.end() ? nullptr : &map.lamps[found->second];
+  }
+
+  std::unordered_map<std::string, size_t> lampOf; // index into the map, by id
+  vpVlpFilter there;                              // a filter that goes on to some other time
+  vpLampFrame frame;
+  std::vector<vpLampObservation> apart; // a frame's, as seen by itself
+  std::vector<size_t> usable;
+  std::vector<vpRect> windows;
 };
 
 END_VISP_NAMESPACE

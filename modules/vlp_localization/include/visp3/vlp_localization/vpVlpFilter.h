@@ -35,11 +35,12 @@ BEGIN_VISP_NAMESPACE
 
   The measurement is that of the solvers: ray = projection of bRc^T (wRb^T (P - wtb) - btc).
 
-  Two variances are weighed by the innovations themselves: those of the random accelerations, which are small
-  while a robot keeps its velocity, and those of the lamps' image points.
+  The variance of the lamps' image points is matched to the innovations. How large the random accelerations
+  are, and what the odometry is worth, are hypotheses: set them, advance and update, and mix() the filters of
+  several of them by how likely the lamps were (Blom and Bar-Shalom 1988).
 
-  Odometry is the velocity's mean over the interval of each sample: between samples the base moves on the arc
-  that they say, and accelerates at random where there is none.
+  Odometry is the velocity's mean over the interval of each sample. Where it is followed, the base moves
+  between samples on the arc that they say, and accelerates at random where there is none.
 
   \code
   vpVlpFilter filter(rig);
@@ -68,10 +69,12 @@ public:
 
   double acceleration = 0.5;   // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
   double turnAcceleration = 3; // rad/s^2/sqrt(Hz), likewise
-  double calmest = 0.0002;     // share of both that is left of them where innovations are small for long
+  double startShare = 0.1;     // of both from start() on, until rouse() or calm()
   double drift = 0.002;        // m/sqrt(s), of z where the robot is restless: a floor is not quite flat
   double tiltDrift = 0.05;     // rad/sqrt(s), of roll and pitch where the attitude is free
-  double startVelocity = 0.2;  // m/s, standard deviation at the start
+  double startPlace = 0.3;     // m, standard deviation of x, y and z at the start, before its lamps are seen
+  double startTurn = 0.3;      // rad, likewise of yaw
+  double startVelocity = 0.2;  // m/s, likewise
   double startTurnRate = 1.5;  // rad/s, likewise
   double odometrySpeed = 0.002;    // m/s, standard deviation of a sample; encoders count ticks
   double odometryShare = 0.01;     // likewise as a share of speed and turn rate: wheels slip now and then
@@ -87,6 +90,13 @@ public:
       0.004; // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
   double claimedPlace = 0.002; // m, likewise to each coordinate of each lamp
   bool freeAttitude = false;   // roll and pitch change, and are as uncertain as the fix at the start
+
+  enum class Odometry {
+    ignored,
+    measured, //!< a measurement of a velocity that is constant but for the random accelerations
+    followed  //!< the velocity is what it says
+  };
+  Odometry odometry = Odometry::followed;
 
   explicit vpVlpFilter(const vpVlpRig &rig);
 
@@ -109,6 +119,10 @@ public:
     interval. \throw vpException (badValue) where a value is not finite.
   */
   void addOdometry(const vpOdometry &sample);
+  //! The samples of another filter that are later than its own.
+  void takeOdometry(const vpVlpFilter &other);
+  //! Whether it tells of the time up to the next line that is seen.
+  bool hasOdometry() const { return m_odometry.size() > 1; }
 
   //! Predicts up to \e time, s. Before time(): no more than a small step back, as for a line read earlier.
   void advance(double time);
@@ -125,22 +139,23 @@ public:
   };
   Innovation innovation(const vpLampSight &lamp) const;
 
+  //! Makes the lamp's error a part of the state: filters that mix() have the same lamps.
+  void expect(const vpLampSight &lamp);
   //! Corrects the state, its covariance in Joseph's form. \e lamp at time().
   void update(const vpLampSight &lamp);
 
-  /*!
-    How restless the robot is, by the innovations of a frame: their Mahalanobis distances squared and degrees
-    of freedom in all. Random accelerations become what explains that part of the innovations since mark()
-    that is motion's (covariance matching, Mehra 1972), and rise fast where all of them are more than chance.
-    \return False where they are beyond chance: the frame had better be taken once more, after rouse().
-  */
-  bool settle(double chiSquare, int degreesOfFreedom);
   //! The robot may start, stop or turn at any time.
   void rouse() { m_unrest = 1; }
   //! Its velocity is constant but for that share of the random accelerations.
   void calm(double share) { m_unrest = share; }
   //! That share.
   double unrest() const { return m_unrest; }
+
+  /*!
+    Mean and covariance of a mixture. \param parts Copies of one filter that went on under different hypotheses
+    up to the same time, this one among them or not. \param weights Of each; their sum is 1.
+  */
+  void mix(const std::vector<const vpVlpFilter *> &parts, const std::vector<double> &weights);
 
   //! Takes the rig's attitude and the map's places for less certain than they say, by claimedTilt and
   //! claimedPlace; from the next start() on, since what was estimated before rests on the claims.
@@ -149,9 +164,6 @@ public:
 
   //! After start(): the velocity is what led here from \e before (m, of x and y in w; rad), \e since s ago.
   void comeFrom(const vpVlpFix &before, double since);
-
-  //! Makes the velocity as uncertain as at the start: the robot has changed its mind.
-  void forgetVelocity();
 
   /*!
     Linearises what follows about the path on which \e corrected has come to its mark(), up to conclude(): the
@@ -246,11 +258,9 @@ private:
   Predicted predict(const vpLampSight &lamp) const;
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
   double placeSigma(const vpLampSight &lamp) const { return std::hypot(lamp.positionSigma, m_placeDoubt); }
-  void addLamp(const vpLampSight &lamp);
   Innovation innovation(const vpLampSight &lamp, const Predicted &predicted) const;
   //! \param stated The covariance that the lamp's ray came with.
   void weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated);
-  void weighMotion(const Innovation &seen, const Eigen::Matrix2d &stated);
   Pose poseOf(Index first) const;
   void tell(Index first, vpVlpFix &fix) const;
   vpVlpFix fixOf(Index first) const;
@@ -265,7 +275,7 @@ private:
   void arc(double dt);
   void move(double dt, bool accelerates);
   void wander(double time);
-  void followOdometry(const vpOdometry &before, const vpOdometry &sample);
+  void useOdometry(const vpOdometry &before, const vpOdometry &sample);
 
   vpVlpRig m_rig;
   bool m_started = false;
@@ -290,9 +300,7 @@ private:
   double m_imageSpeed = 0;                                 // px/s, of the fastest of them
   Eigen::Matrix4d m_common =
       Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
-  double m_unrest = 1;         // share of the random accelerations
-  double m_movable = 0;        // degrees of freedom, since the mark, of innovations that motion may explain
-  double m_moved = 0;          // their Mahalanobis distances squared
+  double m_unrest = 1;        // share of the random accelerations
   double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 

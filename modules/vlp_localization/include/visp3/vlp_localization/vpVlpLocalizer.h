@@ -16,18 +16,21 @@
 #include <visp3/vlp_localization/vpManyLampSolver.h>
 #include <visp3/vlp_localization/vpTwoLampSolver.h>
 #include <visp3/vlp_localization/vpVlpFilter.h>
+#include <visp3/vlp_localization/vpVlpHypotheses.h>
 #include <visp3/vlp_tracking/vpLampTracker.h>
 
 BEGIN_VISP_NAMESPACE
 
-class vpLampTrust;
-struct vpLampExtent;
+class vpPoseMixture;
+class vpPoseHypothesis;
+struct vpLampFrame;
 
 //! What one frame gave.
 struct VISP_EXPORT vpVlpLocation {
   double timestamp = 0; // s, of the frame
   vpVlpFix fix;         // fix.valid false and fix.refusal where there is no position
   bool tracked = false; // the filter's, not of this frame alone
+  bool relocated = false; // the robot seems to have been put there, which no third lamp has borne out yet
   vpVlpFilter::State state = vpVlpFilter::State::starting; // of fix, by its covariance
   std::vector<vpLampObservation> observations; // every lamp-like region, accepted where it counts for the fix
   std::vector<vpRect> searched; // px, the windows in which they were looked for; empty: the whole picture
@@ -63,6 +66,7 @@ public:
   vpTwoLampSolver twoLamps;
   vpLampMatcher matcher; // under the mount's attitude, with a map tolerance of its own; free: does not run
   vpVlpFilter filter;    // its odometry: addOdometry() before process()
+  vpVlpHypotheses hypotheses; // of what happens between two frames
   double mapTolerance = 0.03; // m, how far lamps may hang from where the map says before they disagree, sigma
   double outlierLikelihood = 1e-4; // lamps disagree where their residuals are less likely than this
 
@@ -97,62 +101,30 @@ private:
     double time = 0; // s
   };
 
-  bool attitudeIsFree() const;
-  void placeMiddles(std::vector<vpLampObservation> &observations, const Eigen::Matrix3d &wRb) const;
-  vpVlpFix solve(std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable) const;
-  void solveAlone(vpVlpLocation &location, const std::vector<size_t> &usable);
-  void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
-  void doubtSuddenMotion(vpVlpLocation &location, std::vector<vpLampObservation> &observations,
-                         const std::vector<size_t> &usable) const;
-  bool vague(double time) const;
-  bool beginAnew(vpVlpLocation &location, std::vector<vpLampObservation> observations,
-                 const std::vector<size_t> &usable, bool proven);
-  bool misplacedKnown(const vpVlpLocation &location, const std::vector<size_t> &which) const;
-  enum class Motion { asBefore, restless, sudden, inexplicable }; // that the lamps of a frame show
-  Motion correctRestless(vpVlpLocation &location, const std::vector<size_t> &whole);
-  void correct(vpVlpLocation &location, const std::vector<size_t> &usable);
-  bool bends(const vpVlpLocation &location) const;
-  double strain(const vpVlpLocation &location, const std::vector<size_t> &usable) const;
-  bool contradicts(const vpVlpLocation &location, const std::vector<size_t> &usable, bool roused);
-  const std::vector<size_t> &inTime(const vpVlpLocation &location, const std::vector<size_t> &which) const;
-  void begin(vpVlpLocation &location);
-  static std::vector<size_t> membersOf(const vpVlpLocation &location);
-  void addMotionDoubt(vpVlpLocation &location, const std::vector<size_t> &members) const;
-  bool startAt(const vpVlpLocation &location);
+  bool attitudeIsFree() const
+  {
+    return manyLamps.attitude == vpManyLampSolver::Attitude::free && solver == Solver::all;
+  }
   bool open(double time, vpVlpLocation &location);
-  void locate(vpVlpLocation &location);
-  bool inOrder(double time);
-  const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
-  const std::vector<vpRect> &expectedWindows(double time) const;
   const vpVlpFilter &filterAt(double time) const;
-
+  const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
+  void locate(vpVlpLocation &location);
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
-
-  bool asBefore(const std::vector<vpLampObservation> &observations, const vpVlpFix &fix) const;
-  const std::vector<size_t> &unchanged(vpVlpLocation &location, const std::vector<size_t> &usable);
-  vpLampExtent expectedExtent(const vpLamp &lamp) const;
-  double timeOf(const vpVlpLocation &location, const vpLampObservation &seen) const;
-
-  //! The map's lamp of each, by its id; nullptr: none. Until the next call.
-  const std::vector<const vpLamp *> &lampsOf(const std::vector<vpLampObservation> &observations) const;
+  vpVlpFix solve(std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable) const;
+  const vpLampFrame &frameOf(const std::vector<vpLampObservation> &observations,
+                             const std::vector<size_t> &usable, double time) const;
+  vpPoseHypothesis placeAt(const vpVlpFix &fix, const vpLampFrame &frame, bool put, bool wider) const;
+  void begin(vpVlpLocation &location, const std::vector<size_t> &usable);
+  void settle(vpVlpLocation &location);
+  void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
 
   vpVlpRig m_rig;
   vpLampMap m_map;
-  std::unordered_map<std::string, size_t> m_lampOf; // index into the map, by id
-  double m_lineTime = 0;                            // s, from line to line
-  double m_halfReadout = 0;                         // s, from a frame's time stamp to its middle line
   std::optional<LastPose> m_lastPose;
-  std::optional<LastPose> m_apart;   // by the lamps of a frame that did not agree with the robot's motion
   std::optional<double> m_lastFrame; // s
-  std::unique_ptr<vpLampTrust> m_trust;
+  std::unique_ptr<vpPoseMixture> m_places;
   std::unique_ptr<Scratch> m_scratch; // memory that frames after the first take over
-  int m_followed = 0;                 // frames since the filter's start
-  bool m_moving = false;              // the filter began with a velocity, from the pose before
-  int m_contradictions = 0; // frames of late whose lamps contradict what camera and map say of themselves
-  double m_unresting = 0;   // s, of late, in which only a robot that never comes to rest explains the frames
-  bool m_refused = false;   // the frame before: its lamps did not agree with the robot's motion
-  int m_disagreements = 0;  // frames in a row whose lamps agree with each other, and not with the filter
 };
 
 END_VISP_NAMESPACE

@@ -1,0 +1,51 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpVlpHypotheses_h
+#define vpVlpHypotheses_h
+
+#include <visp3/core/vpConfig.h>
+
+BEGIN_VISP_NAMESPACE
+
+/*!
+  What vpVlpLocalizer thinks possible, and how probable it is before a frame is seen. `src/MODEL.md` is the
+  model; each member is a rate, a probability, or a length of it.
+*/
+struct VISP_EXPORT vpVlpHypotheses {
+  // How the robot moves: shares of vpVlpFilter's random accelerations. The whole of them: it starts or stops.
+  double steady = 0.001; // it keeps its velocity
+  double gentle = 0.02;
+  double lively = 0.2;
+  double onWheels = 0.03; // beyond the latest sample of an odometry that is followed
+  double unrest = 0.5;    // 1/s, at which it leaves one kind of motion for any of the others
+  double rest = 3;        // 1/s, at which it comes back to the steady one
+
+  // Whether the odometry tells its velocity.
+  double right = 0.95;  // where it begins
+  double slip = 0.0003; // 1/s, at which it ceases to
+  double grip = 0.3;    // 1/s, at which it does so again
+
+  // Whether it was put elsewhere, wheels standing or not.
+  double relocation = 0.01; // 1/s
+  double reach = 0.1;       // m, of a step in x and y: bivariate Cauchy distribution
+  double turn = 0.3;        // rad, of a turn: Cauchy distribution
+  double floorStep = 0.01;  // m, in z: Cauchy distribution
+
+  // What is seen with a lamp's id.
+  double displaced = 0.001; // the lamp, off by what vpVlpLocalizer::mapTolerance says
+  double stranger = 0.001;  // another light, anywhere in the picture
+  double staying = 0.99;    // what it was in the frame before
+  double copy = 0.001;      // 1/s, at which two lamps give way to two others as far apart: a mirror image of them
+
+  // Whether rig and map are as exact as they say.
+  double boast = 0.001; // they are off by vpVlpFilter's claimedTilt and claimedPlace more
+
+  double negligible = 1e-4; // a hypothesis less probable than this is dropped
+  double decided = 0.99;    // else the pose is ambiguous, where the other one is elsewhere
+};
+
+END_VISP_NAMESPACE
+
+#endif

@@ -1,0 +1,37 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpLampFrame_h
+#define vpLampFrame_h
+
+#include <vector>
+
+#include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_core/vpLampObservation.h>
+#include <visp3/vlp_core/vpVlpRig.h>
+#include <visp3/vlp_localization/vpVlpFix.h>
+
+BEGIN_VISP_NAMESPACE
+
+//! A lamp of the map in a frame.
+struct vpFrameLamp {
+  size_t observation; // index of it
+  const vpLamp *lamp;
+  const vpLampObservation *seen;
+  double time; // s, of the line that saw its middle
+  vpLampSight sight;
+};
+
+//! The lamps of the map that a frame shows, in the order of their lines.
+struct vpLampFrame {
+  const vpVlpRig *rig = nullptr;
+  double lineTime = 0;   // s, from line to line
+  double timestamp = 0;  // s
+  double logUniform = 0; // log density of a ray that may be anywhere in the picture
+  std::vector<vpFrameLamp> lamps;
+};
+
+END_VISP_NAMESPACE
+
+#endif

@@ -1,0 +1,98 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpMotionModes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+//! One of several kinds, the first of which is left at the rate \e unrest and come back to at \e rest, 1/s.
+template <size_t Kinds>
+void wander(std::array<double, Kinds> &probability, double dt, double unrest, double rest)
+{
+  const double leave = 1 - std::exp(-unrest * dt), settle = 1 - std::exp(-rest * dt);
+  std::array<double, Kinds> after{};
+  for (size_t from = 0; from < Kinds; ++from) {
+    const double back = from == 0 ? 0 : settle, away = (1 - back) * leave;
+    after[0] += probability[from] * back;
+    after[from] += probability[from] * (1 - back) * (1 - leave);
+    for (size_t to = 0; to < Kinds; ++to) {
+      after[to] += to == from ? 0 : probability[from] * away / (Kinds - 1);
+    }
+  }
+  probability = after;
+}
+
+template <size_t Kinds>
+void start(std::array<double, Kinds> &probability)
+{
+  probability.fill(1. / Kinds);
+}
+} // namespace
+
+vpMotionModes::vpMotionModes(const vpVlpHypotheses &hypotheses)
+    : m_hypotheses(hypotheses), m_right(hypotheses.right)
+{
+  start(m_without);
+  start(m_by);
+  predict(0, false);
+}
+
+void vpMotionModes::apply(size_t mode, vpVlpFilter &filter) const
+{
+  const vpVlpHypotheses &of = m_hypotheses;
+  const std::array<double, count> shares = {of.steady, of.gentle, of.lively, 1, of.steady, of.onWheels};
+  using Odometry = vpVlpFilter::Odometry;
+  filter.odometry = mode < alone ? Odometry::ignored : mode == alone ? Odometry::measured : Odometry::followed;
+  filter.calm(shares[mode]);
+}
+
+void vpMotionModes::predict(double dt, bool odometry)
+{
+  const vpVlpHypotheses &of = m_hypotheses;
+  wander(m_without, dt, of.unrest, of.rest);
+  wander(m_by, dt, of.unrest, of.rest);
+  m_right = m_right * std::exp(-of.slip * dt) + (1 - m_right) * (1 - std::exp(-of.grip * dt));
+  m_odometry = odometry;
+  const double by = odometry ? m_right : 0;
+  for (size_t k = 0; k < count; ++k) {
+    m_probability[k] = k < alone ? (1 - by) * m_without[k] : by * m_by[k - alone];
+  }
+}
+
+double vpMotionModes::correct(const std::array<double, count> &logLikelihood)
+{
+  const double most = *std::max_element(logLikelihood.begin(), logLikelihood.begin() + possible());
+  double sum = 0;
+  for (size_t k = 0; k < possible(); ++k) {
+    m_probability[k] *= std::exp(logLikelihood[k] - most);
+    sum += m_probability[k];
+  }
+  const auto share = [this, sum](auto &kinds, size_t first) {
+    const auto from = m_probability.begin() + static_cast<long>(first);
+    const double all = std::accumulate(from, from + static_cast<long>(kinds.size()), 0.);
+    for (size_t k = 0; k < kinds.size() && all > 0; ++k) {
+      kinds[k] = m_probability[first + k] / all;
+    }
+    return all / sum;
+  };
+  for (double &probability : m_probability) {
+    probability = std::max(probability, 0.0);
+  }
+  share(m_without, 0);
+  if (m_odometry) {
+    m_right = share(m_by, alone);
+  }
+  for (double &probability : m_probability) {
+    probability /= sum;
+  }
+  return most + std::log(sum);
+}
+
+END_VISP_NAMESPACE

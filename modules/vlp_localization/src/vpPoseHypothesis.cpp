@@ -1,0 +1,267 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpPoseHypothesis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "vpLampGeometry.h"
+
+BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const char *const misplaced = "not where the robot's motion has it";
+
+double logSum(double a, double b)
+{
+  return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b)));
+}
+
+double logNormal(const Eigen::Vector2d &off, const Eigen::Matrix2d &covariance)
+{
+  return -0.5 * (off.dot(covariance.inverse() * off) + std::log(covariance.determinant())) -
+         std::log(2 * M_PI);
+}
+
+//! Whether lamps are so far from where the filter expected them that their rays are not linear in it.
+bool bends(const std::vector<vpPoseHypothesis::Verdict> &verdicts)
+{
+  static const double most = 0.004; // of what is linear; its square is a few hundredths of a pixel
+  return std::any_of(verdicts.begin(), verdicts.end(), [](const vpPoseHypothesis::Verdict &lamp) {
+    return lamp.accepted && lamp.innovation.ray.squaredNorm() > most * most;
+  });
+}
+} // namespace
+
+vpPoseHypothesis::vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses,
+                                   const vpLampTrust &trust)
+    : filter(filter), trust(trust), m_hypotheses(hypotheses), m_modes(hypotheses),
+      m_passes(vpMotionModes::count, Pass{filter, {}, 0}), m_before(filter), m_modesBefore(hypotheses)
+{
+}
+
+void vpPoseHypothesis::begin(const vpLampFrame &frame)
+{
+  trust.forgetPlaces();
+  for (const vpFrameLamp &lamp : frame.lamps) { // others than those that agree with each other are left out
+    m_changes.push_back(lamp.seen->accepted ? "" : lamp.seen->remark);
+  }
+  m_time = frame.timestamp;
+  weigh(frame, 0);
+  filter.startAgain(); // about what they show
+  m_modes = vpMotionModes(m_hypotheses);
+  m_logLikelihood = weigh(frame, 0);
+  learn(frame);
+  borneOut = true;
+}
+
+double vpPoseHypothesis::follow(const vpLampFrame &frame)
+{
+  compare(frame);
+  m_before = filter;
+  m_modesBefore = m_modes;
+  m_since = frame.timestamp - m_time;
+  m_logLikelihood = weigh(frame, m_since);
+  m_time = frame.timestamp;
+  learn(frame);
+  ++frames;
+  return m_logLikelihood;
+}
+
+//! Goes on under each mode, and mixes what comes of them.
+double vpPoseHypothesis::weigh(const vpLampFrame &frame, double dt)
+{
+  for (const vpFrameLamp &lamp : frame.lamps) {
+    filter.expect(lamp.sight);
+  }
+  m_modes.predict(dt, filter.hasOdometry());
+  std::array<double, vpMotionModes::count> logLikelihood{};
+  const vpVlpFilter before = filter;
+  for (size_t mode = 0; mode < m_modes.possible(); ++mode) {
+    Pass &pass = m_passes[mode];
+    attempt(frame, before, mode, pass);
+    logLikelihood[mode] = pass.logLikelihood;
+  }
+  const double all = m_modes.correct(logLikelihood);
+  std::vector<const vpVlpFilter *> parts;
+  std::vector<double> weights;
+  m_likeliest = 0;
+  for (size_t mode = 0; mode < m_modes.possible(); ++mode) {
+    if (m_modes[mode] > m_hypotheses.negligible) {
+      parts.push_back(&m_passes[mode].filter);
+      weights.push_back(m_modes[mode]);
+    }
+    m_likeliest = m_modes[mode] > m_modes[m_likeliest] ? mode : m_likeliest;
+  }
+  filter = m_passes[m_likeliest].filter;
+  filter.mix(parts, weights);
+  filter.odometry = m_modes.odometryIsOff() < 0.5 ? vpVlpFilter::Odometry::followed : vpVlpFilter::Odometry::ignored;
+  verdicts = m_passes[m_likeliest].verdicts;
+  return all;
+}
+
+//! One mode's: rays are not linear in a long way to where they say, about that path, then.
+void vpPoseHypothesis::attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode,
+                               Pass &pass) const
+{
+  pass.filter = before;
+  m_modes.apply(mode, pass.filter);
+  correct(frame, pass);
+  for (int round = 0; round < 2 && bends(pass.verdicts); ++round) {
+    vpVlpFilter there = before;
+    m_modes.apply(mode, there);
+    if (!there.linearizeAbout(pass.filter)) {
+      return;
+    }
+    pass.filter = there;
+    correct(frame, pass);
+  }
+}
+
+//! Lets each lamp correct at the time of its line.
+void vpPoseHypothesis::correct(const vpLampFrame &frame, Pass &pass) const
+{
+  pass.verdicts.clear();
+  pass.logLikelihood = 0;
+  pass.filter.mark(frame.timestamp);
+  for (size_t k = 0; k < frame.lamps.size(); ++k) {
+    const vpFrameLamp &lamp = frame.lamps[k];
+    pass.filter.advance(lamp.time);
+    vpLampSight sight = lamp.sight;
+    const Verdict verdict = judge(*lamp.lamp, m_changes[k].empty(), sight, pass.filter, frame.logUniform);
+    if (verdict.accepted) {
+      pass.filter.update(sight);
+    }
+    pass.logLikelihood += verdict.logLikelihood;
+    pass.verdicts.push_back(verdict);
+  }
+  pass.filter.conclude();
+}
+
+//! \param sight Becomes as uncertain as what the lamp may be off by makes it.
+vpPoseHypothesis::Verdict vpPoseHypothesis::judge(const vpLamp &lamp, bool asLarge, vpLampSight &sight,
+                                                  const vpVlpFilter &filter, double logUniform) const
+{
+  const double stranger = trust.doubts(lamp) ? m_hypotheses.staying : m_hypotheses.stranger;
+  const double other = std::log(stranger) + logUniform;
+  Verdict verdict;
+  verdict.logLikelihood = other;
+  const Eigen::Vector2d offset = trust.offset(lamp);
+  sight.covariance += offset * offset.transpose();
+  verdict.innovation = filter.innovation(sight);
+  const vpVlpFilter::Innovation &seen = verdict.innovation;
+  if (!seen.inFront || !asLarge) {
+    return verdict;
+  }
+  const double tolerance = trust.tolerance(lamp) / seen.depth,
+               displaced = (1 - stranger) * m_hypotheses.displaced;
+  const Eigen::Matrix2d anyOffset = tolerance * tolerance * Eigen::Matrix2d::Identity();
+  const double exact = std::log(1 - stranger - displaced) + logNormal(seen.ray, seen.covariance),
+               near = std::log(displaced) + logNormal(seen.ray - offset, seen.covariance + anyOffset);
+  verdict.accepted = std::max(exact, near) > other;
+  if (near > exact) {
+    sight.covariance += anyOffset;
+  }
+  verdict.logLikelihood = logSum(exact, logSum(near, other));
+  return verdict;
+}
+
+//! Which lamps are not as large, or not of the shape, as before, and why.
+void vpPoseHypothesis::compare(const vpLampFrame &frame)
+{
+  m_changes.clear();
+  for (const vpFrameLamp &lamp : frame.lamps) {
+    m_changes.push_back(trust.changed(*lamp.lamp, *lamp.seen, expectedExtent(frame, *lamp.lamp)));
+  }
+}
+
+//! What the frame tells of its lamps.
+void vpPoseHypothesis::learn(const vpLampFrame &frame)
+{
+  for (size_t k = 0; k < frame.lamps.size(); ++k) {
+    const vpFrameLamp &lamp = frame.lamps[k];
+    if (verdicts[k].accepted) {
+      trust.believe(*lamp.lamp, *lamp.seen, verdicts[k].innovation, expectedExtent(frame, *lamp.lamp));
+    } else if (m_changes[k].empty()) {
+      trust.doubtPlace(*lamp.lamp, true);
+    }
+  }
+}
+
+//! Of a lamp in the picture, seen from where the filter is.
+vpLampExtent vpPoseHypothesis::expectedExtent(const vpLampFrame &frame, const vpLamp &lamp) const
+{
+  const vpVlpFilter::Pose pose = filter.pose();
+  const Eigen::Matrix3d open = filter.velocityCovariance();
+  const double height = lamp.position.z() - pose.wtc.z(), apart = (lamp.position - pose.wtc).head<2>().norm();
+  const double speed = std::sqrt(std::max(open(0, 0), open(1, 1))) + apart * std::sqrt(open(2, 2));
+  return {vpLampTrust::extentOf(lamp, pose.wMb, filter.velocity(), *frame.rig, frame.lineTime),
+          frame.rig->camera.get_px() * speed / std::max(height, 1e-3) * std::abs(frame.lineTime)};
+}
+
+vpPoseHypothesis vpPoseHypothesis::coasted(const vpLampFrame &frame) const
+{
+  vpPoseHypothesis other = *this;
+  other.filter = m_before;
+  other.m_modes = m_modesBefore;
+  other.m_changes.assign(frame.lamps.size(), misplaced);
+  other.m_logLikelihood = other.weigh(frame, m_since);
+  for (const vpFrameLamp &lamp : frame.lamps) {
+    other.trust.doubtPlace(*lamp.lamp, true);
+  }
+  return other;
+}
+
+double vpPoseHypothesis::logStep(const vpPoseHypothesis &before) const
+{
+  const vpHomogeneousMatrix way = before.m_before.now().wMb.inverse() * filter.marked().wMb;
+  const double r = m_hypotheses.reach, h = m_hypotheses.floorStep, t = m_hypotheses.turn;
+  const auto cauchy = [](double x, double scale) {
+    return -std::log(M_PI * scale * (1 + x * x / (scale * scale)));
+  };
+  const double aside = (way[0][3] * way[0][3] + way[1][3] * way[1][3]) / (r * r);
+  const double logWay = -std::log(2 * M_PI * r * r) - 1.5 * std::log1p(aside) + cauchy(way[2][3], h) +
+                        cauchy(std::atan2(way[1][0], way[0][0]), t),
+               logBegun = -2 * std::log(2 * M_PI) - 3 * std::log(filter.startPlace) - std::log(filter.startTurn);
+  return logWay - logBegun + m_logLikelihood;
+}
+
+size_t vpPoseHypothesis::accepted() const
+{
+  return static_cast<size_t>(
+      std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict &lamp) { return lamp.accepted; }));
+}
+
+void vpPoseHypothesis::tell(const vpLampFrame &frame, vpVlpFix &fix) const
+{
+  fix.valid = true;
+  fix.refusal.clear();
+  fix.lamps.clear();
+  fix.residuals.clear();
+  fix.chiSquare = 0;
+  for (size_t k = 0; k < frame.lamps.size(); ++k) {
+    if (verdicts[k].accepted) {
+      fix.lamps.push_back(frame.lamps[k].lamp->id);
+      fix.residuals.push_back(verdicts[k].innovation.ray);
+      fix.chiSquare += verdicts[k].innovation.distance(0);
+    }
+  }
+  fix.degreesOfFreedom = 2 * static_cast<int>(fix.lamps.size());
+  filter.tellMarked(fix);
+}
+
+void vpPoseHypothesis::mark(const vpLampFrame &frame, std::vector<vpLampObservation> &observations) const
+{
+  for (size_t k = 0; k < frame.lamps.size(); ++k) {
+    vpLampObservation &seen = observations[frame.lamps[k].observation];
+    seen.accepted = verdicts[k].accepted;
+    seen.remark = seen.accepted ? "" : m_changes[k].empty() ? misplaced : m_changes[k];
+  }
+}
+
+END_VISP_NAMESPACE

@@ -1,0 +1,165 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#include "vpPoseMixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "vpLampGeometry.h"
+
+BEGIN_VISP_NAMESPACE
+
+void vpPoseMixture::lose()
+{
+  m_lamps = lamps();
+  m_lamps.forgetPlaces();
+  m_places.clear();
+}
+
+void vpPoseMixture::restart(const vpPoseHypothesis &place)
+{
+  m_places.assign(1, place);
+  m_places.front().logWeight = 0;
+}
+
+void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry)
+{
+  std::vector<std::vector<bool>> strangers; // before this frame
+  for (vpPoseHypothesis &place : m_places) {
+    strangers.emplace_back();
+    for (const vpFrameLamp &lamp : frame.lamps) {
+      strangers.back().push_back(place.trust.doubts(*lamp.lamp));
+    }
+    place.filter.takeOdometry(odometry);
+    place.logWeight += place.follow(frame);
+  }
+  // A stranger hangs still as well: from frame to frame it shows what a lamp in its place would.
+  for (size_t k = 0; k < frame.lamps.size(); ++k) {
+    double most = -1e300;
+    for (const vpPoseHypothesis &place : m_places) {
+      most = std::max(most, place.verdicts[k].accepted ? place.verdicts[k].logLikelihood : -1e300);
+    }
+    for (size_t p = 0; p < m_places.size(); ++p) {
+      const vpPoseHypothesis::Verdict &verdict = m_places[p].verdicts[k];
+      if (strangers[p][k] && !verdict.accepted) {
+        m_places[p].logWeight += std::max(0.0, most - verdict.logLikelihood);
+      }
+    }
+  }
+}
+
+bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const
+{
+  static const size_t fewest = 2; // lamps that tell a pose
+  if (frame.lamps.size() < fewest) {
+    return false;
+  }
+  // Two lamps may then be anywhere in the picture, and the others are where they should be.
+  double most = std::log(hypotheses.relocation);
+  std::vector<double> densities;
+  for (const vpFrameLamp &lamp : frame.lamps) {
+    densities.push_back(-std::log(2 * M_PI) - 0.5 * std::log(lamp.sight.covariance.determinant()));
+  }
+  std::sort(densities.begin(), densities.end());
+  for (size_t k = 0; k < densities.size(); ++k) {
+    most += k < fewest ? std::max(frame.logUniform, 0.0) + 2 : densities[k];
+  }
+  double now = -1e300;
+  for (const vpPoseHypothesis &place : m_places) {
+    now = std::max(now, place.logWeight);
+  }
+  return most > now + std::log(hypotheses.negligible);
+}
+
+bool vpPoseMixture::mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const
+{
+  static const size_t fewest = 3; // lamps, of which two tell any pose
+  return frame.lamps.size() >= fewest && m_places.size() == 1 && likeliest().steady() < 1 - hypotheses.decided;
+}
+
+void vpPoseMixture::addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypotheses, bool isFirst)
+{
+  place.logWeight = likeliest().logWeight + std::log(hypotheses.boast) +
+                    (isFirst ? place.logLikelihood() - likeliest().logLikelihood() : 0);
+  m_places.push_back(std::move(place));
+}
+
+void vpPoseMixture::addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place,
+                                 const vpVlpHypotheses &hypotheses, double since)
+{
+  static const size_t fewest = 2; // lamps that a pose needs
+  const vpPoseHypothesis &here = likeliest();
+  const double logStep = place.logStep(here);
+  place.borneOut = place.accepted() > fewest;
+  place.logWeight = std::log(hypotheses.relocation * since * here.odometryIsOff()) + logStep;
+  std::vector<vpPoseHypothesis> more;
+  if (!place.borneOut) { // or the lamps have given way to others
+    more.push_back(here.coasted(frame));
+    more.back().logWeight = std::log(hypotheses.copy * since) + logStep;
+  }
+  more.push_back(std::move(place));
+  std::move(more.begin(), more.end(), std::back_inserter(m_places));
+}
+
+void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
+{
+  std::stable_sort(m_places.begin(), m_places.end(), [](const vpPoseHypothesis &a, const vpPoseHypothesis &b) {
+    return a.logWeight > b.logWeight;
+  });
+  const double most = m_places.front().logWeight;
+  const auto negligible = [&](const vpPoseHypothesis &place) {
+    return place.logWeight < most + std::log(hypotheses.negligible) ||
+           (&place != &m_places.front() && place.filter.state(place.filter.pose()) == vpVlpFilter::State::lost);
+  };
+  static const size_t many = 4;
+  size_t kept = 1;
+  while (kept < std::min(many, m_places.size()) && !negligible(m_places[kept])) {
+    ++kept;
+  }
+  m_places.erase(m_places.begin() + static_cast<long>(kept), m_places.end());
+  double sum = 0;
+  for (const vpPoseHypothesis &place : m_places) {
+    sum += std::exp(place.logWeight - most);
+  }
+  for (vpPoseHypothesis &place : m_places) {
+    place.logWeight -= most + std::log(sum);
+  }
+}
+
+bool vpPoseMixture::lost() const
+{
+  return likeliest().filter.state(likeliest().filter.marked()) == vpVlpFilter::State::lost;
+}
+
+void vpPoseMixture::tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses,
+                         vpVlpLocation &location) const
+{
+  likeliest().mark(frame, location.observations);
+  vpVlpFix &fix = location.fix;
+  likeliest().tell(frame, fix);
+  location.relocated = !likeliest().borneOut;
+  const vpBasePose pose = vpBasePose::of(fix.wMb);
+  double elsewhere = 0;
+  for (size_t p = 1; p < m_places.size(); ++p) {
+    const vpPoseHypothesis &place = m_places[p];
+    const double weight = std::exp(place.logWeight);
+    const vpVlpFix there = place.filter.marked();
+    const Eigen::Matrix<double, 6, 1> apart = pose.stepTo(vpBasePose::of(there.wMb));
+    fix.covariance += weight * apart * apart.transpose();
+    if (apart.head<2>().norm() > place.filter.trackingSigma || std::abs(apart(5)) > place.filter.trackingYaw) {
+      elsewhere += weight;
+      if (elsewhere == weight) {
+        fix.other = there.wMb;
+      }
+    }
+  }
+  fix.ambiguous = elsewhere > 1 - hypotheses.decided;
+}
+
+END_VISP_NAMESPACE

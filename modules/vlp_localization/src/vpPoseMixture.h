@@ -1,0 +1,55 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+#ifndef vpPoseMixture_h
+#define vpPoseMixture_h
+
+#include <vector>
+
+#include <visp3/vlp_localization/vpVlpLocalizer.h>
+
+#include "vpPoseHypothesis.h"
+
+BEGIN_VISP_NAMESPACE
+
+//! The places where the robot may be, mostly one, and how probable each is (MODEL.md, 4).
+class vpPoseMixture
+{
+public:
+  bool empty() const { return m_places.empty(); }
+  const vpPoseHypothesis &likeliest() const { return m_places.front(); }
+  //! What is known of lamps, wherever the robot is.
+  const vpLampTrust &lamps() const { return empty() ? m_lamps : likeliest().trust; }
+
+  //! Nothing is known of the robot any more, and of the lamps how large they are.
+  void lose();
+  //! The robot is at one place for sure.
+  void restart(const vpPoseHypothesis &place);
+  //! All places go on to a frame. \param odometry Has the samples that came meanwhile.
+  void follow(const vpLampFrame &frame, const vpVlpFilter &odometry);
+  //! Whether the frame is so unlikely from all of them that a robot that was put elsewhere may explain it better.
+  bool mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const;
+  //! Whether the robot's motion is such as it would seem under camera and map that are off.
+  bool mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const;
+  //! Camera and map are less exact than they say: the latest frame under such claims. \param isFirst It is the
+  //! first frame of the likeliest place as well.
+  void addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypotheses, bool isFirst);
+  //! The robot was put there with the latest frame. \param since s, since the frame before.
+  void addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place, const vpVlpHypotheses &hypotheses,
+                    double since);
+  //! Drops what is improbable, and sorts the rest.
+  void reduce(const vpVlpHypotheses &hypotheses);
+  //! Whether all are so uncertain that they mean nothing.
+  bool lost() const;
+  //! The likeliest pose, its covariance that of all, and what it rests on.
+  void tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpLocation &location) const;
+
+private:
+  std::vector<vpPoseHypothesis> m_places; // the likeliest first
+  vpLampTrust m_lamps;                    // where there is no place
+};
+
+END_VISP_NAMESPACE
+
+#endif
