@@ -213,7 +213,14 @@ public:
       lamp.covariance = pointSigma * pointSigma * Eigen::Matrix2d::Identity();
       lamp.outline.shape = vpLampOutline::Shape::ellipse;
       lamp.outline.centre = lamp.point;
-      lamp.outline.a = lamp.outline.b = radius;
+      // Lines that are read while the picture runs ahead of the readout see more of it.
+      static const double moment = 1e-3; // s
+      Eigen::Vector2d later;
+      project(m_hung[k], path(timestamp + timing.middleAt(pixel.y()) + moment).wMb(), later);
+      const double stretch = 1 / (1 - (later.y() - pixel.y()) / moment * timing.meanLineTime());
+      lamp.outline.a = radius * std::max(1.0, stretch);
+      lamp.outline.b = radius * std::min(1.0, stretch);
+      lamp.outline.angle = stretch > 1 ? M_PI / 2 : 0;
       lamp.outline.centreCovariance = lamp.covariance;
       lamp.time = timing.middleAt(lamp.point.y());
       seen.push_back(lamp);

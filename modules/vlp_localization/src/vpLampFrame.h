@@ -21,6 +21,7 @@ struct vpFrameLamp {
   const vpLampObservation *seen;
   double time; // s, of the line that saw its middle
   vpLampSight sight;
+  double logPeak; // log density of its ray where it is expected for sure
 };
 
 //! The lamps of the map that a frame shows, in the order of their lines.

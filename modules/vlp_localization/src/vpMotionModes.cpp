@@ -58,7 +58,10 @@ void vpMotionModes::predict(double dt, bool odometry)
   const vpVlpHypotheses &of = m_hypotheses;
   wander(m_without, dt, of.unrest, of.rest);
   wander(m_by, dt, of.unrest, of.rest);
-  m_right = m_right * std::exp(-of.slip * dt) + (1 - m_right) * (1 - std::exp(-of.grip * dt));
+  const double slipped = m_right * (1 - std::exp(-of.slip * dt)),
+               gripped = (1 - m_right) * (1 - std::exp(-of.grip * dt));
+  m_right += gripped - slipped;
+  m_changed = {slipped / std::max(1 - m_right, 1e-300), gripped / std::max(m_right, 1e-300)};
   m_odometry = odometry;
   const double by = odometry ? m_right : 0;
   for (size_t k = 0; k < count; ++k) {
@@ -66,10 +69,17 @@ void vpMotionModes::predict(double dt, bool odometry)
   }
 }
 
+size_t vpMotionModes::likeliest() const
+{
+  const auto first = m_probability.begin();
+  return static_cast<size_t>(std::max_element(first, first + static_cast<long>(possible())) - first);
+}
+
 double vpMotionModes::correct(const std::array<double, count> &logLikelihood)
 {
   const double most = *std::max_element(logLikelihood.begin(), logLikelihood.begin() + possible());
   double sum = 0;
+  const std::array<double, count> prior = m_probability;
   for (size_t k = 0; k < possible(); ++k) {
     m_probability[k] *= std::exp(logLikelihood[k] - most);
     sum += m_probability[k];
@@ -89,8 +99,9 @@ double vpMotionModes::correct(const std::array<double, count> &logLikelihood)
   if (m_odometry) {
     m_right = share(m_by, alone);
   }
-  for (double &probability : m_probability) {
-    probability /= sum;
+  for (size_t k = 0; k < count; ++k) {
+    m_probability[k] /= sum;
+    m_information += m_probability[k] > 0 ? m_probability[k] * std::log(m_probability[k] / prior[k]) : 0;
   }
   return most + std::log(sum);
 }

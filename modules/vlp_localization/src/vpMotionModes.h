@@ -18,6 +18,9 @@ class vpMotionModes
 public:
   static constexpr size_t count = 6, alone = 4; // the first ones do without odometry
 
+  //! Whether a mode takes the odometry to be right.
+  static bool byOdometry(size_t mode) { return mode >= alone; }
+
   //! As it is before anything is known.
   explicit vpMotionModes(const vpVlpHypotheses &hypotheses);
 
@@ -26,12 +29,15 @@ public:
 
   //! After \e dt seconds, before a frame is seen. \param odometry Whether there is any.
   void predict(double dt, bool odometry);
+  //! Share of the probability that the odometry is off (0) or right (1) that comes of the other one's.
+  double changed(size_t right) const { return m_changed[right]; }
+  size_t likeliest() const;
   //! How many modes there are for that frame.
   size_t possible() const { return m_odometry ? count : alone; }
   //! Probability that the odometry, where there is any, does not tell the velocity.
   double odometryIsOff() const { return m_odometry ? 1 - m_right : 1; }
-  //! Probability that the robot keeps its velocity.
-  double steady() const { return m_probability[0] + m_probability[alone]; }
+  //! How much the frames since the start have told of the motion, nats: what it was less probable to be.
+  double information() const { return m_information; }
   double operator[](size_t mode) const { return m_probability[mode]; }
   //! By how likely each mode makes the frame. \return Log likelihood of the frame.
   double correct(const std::array<double, count> &logLikelihood);
@@ -40,6 +46,8 @@ private:
   vpVlpHypotheses m_hypotheses;
   bool m_odometry = false;
   double m_right;                         // the odometry is
+  std::array<double, 2> m_changed{};
+  double m_information = 0;
   std::array<double, alone> m_without;    // kinds of motion, where it is not,
   std::array<double, count - alone> m_by; // where it is
   std::array<double, count> m_probability;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -41,7 +42,8 @@ bool bends(const std::vector<vpPoseHypothesis::Verdict> &verdicts)
 vpPoseHypothesis::vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses,
                                    const vpLampTrust &trust)
     : filter(filter), trust(trust), m_hypotheses(hypotheses), m_modes(hypotheses),
-      m_passes(vpMotionModes::count, Pass{filter, {}, 0}), m_before(filter), m_modesBefore(hypotheses)
+      m_passes(vpMotionModes::count, Pass{filter, {}, 0}), m_apart{filter, filter}, m_before(filter),
+      m_apartBefore{filter, filter}, m_modesBefore(hypotheses)
 {
 }
 
@@ -54,16 +56,19 @@ void vpPoseHypothesis::begin(const vpLampFrame &frame)
   m_time = frame.timestamp;
   weigh(frame, 0);
   filter.startAgain(); // about what they show
+  m_parted = false;
   m_modes = vpMotionModes(m_hypotheses);
   m_logLikelihood = weigh(frame, 0);
   learn(frame);
   borneOut = true;
+  allowed = -std::log(m_hypotheses.boast);
 }
 
 double vpPoseHypothesis::follow(const vpLampFrame &frame)
 {
   compare(frame);
   m_before = filter;
+  m_apartBefore = m_apart;
   m_modesBefore = m_modes;
   m_since = frame.timestamp - m_time;
   m_logLikelihood = weigh(frame, m_since);
@@ -73,45 +78,82 @@ double vpPoseHypothesis::follow(const vpLampFrame &frame)
   return m_logLikelihood;
 }
 
-//! Goes on under each mode, and mixes what comes of them.
+/*!
+  Goes on under each mode, and mixes what comes of them (Blom and Bar-Shalom 1988). Whether the odometry is right
+  has a filter each, as what tells it takes many frames; the kinds of motion share theirs.
+*/
 double vpPoseHypothesis::weigh(const vpLampFrame &frame, double dt)
 {
+  const bool odometry = filter.hasOdometry();
   for (const vpFrameLamp &lamp : frame.lamps) {
-    filter.expect(lamp.sight);
+    for (vpVlpFilter *each : {&filter, &m_apart[0], &m_apart[1]}) {
+      each->expect(lamp.sight);
+    }
   }
-  m_modes.predict(dt, filter.hasOdometry());
+  if (!odometry || !m_parted) {
+    m_apart.fill(filter);
+  }
+  m_modes.predict(dt, odometry);
+  if (odometry && m_parted) {
+    const std::array<vpVlpFilter, 2> before = m_apart;
+    for (size_t to = 0; to < 2; ++to) {
+      m_apart[to].takeOdometry(filter);
+      const double from = m_modes.changed(to);
+      m_apart[to].mix({&before[to], &before[1 - to]}, {1 - from, from});
+    }
+  }
+  m_parted = odometry;
   std::array<double, vpMotionModes::count> logLikelihood{};
-  const vpVlpFilter before = filter;
-  for (size_t mode = 0; mode < m_modes.possible(); ++mode) {
-    Pass &pass = m_passes[mode];
-    attempt(frame, before, mode, pass);
-    logLikelihood[mode] = pass.logLikelihood;
+  std::array<double, 2> most; // of those that share a filter
+  most.fill(-std::numeric_limits<double>::infinity());
+  for (size_t k = 0; k < m_modes.possible(); ++k) { // the likeliest one first, so that others are given up soon
+    const size_t mode = k == 0 ? m_modes.likeliest() : k - (k <= m_modes.likeliest() ? 1 : 0);
+    const size_t which = vpMotionModes::byOdometry(mode) ? 1 : 0;
+    const double logPrior = std::log(m_modes[mode]);
+    attempt(frame, m_apart[which], mode, most[which] + std::log(m_hypotheses.negligible) - logPrior,
+            m_passes[mode]);
+    logLikelihood[mode] = m_passes[mode].logLikelihood;
+    most[which] = std::max(most[which], logPrior + logLikelihood[mode]);
   }
   const double all = m_modes.correct(logLikelihood);
-  std::vector<const vpVlpFilter *> parts;
-  std::vector<double> weights;
-  m_likeliest = 0;
-  for (size_t mode = 0; mode < m_modes.possible(); ++mode) {
-    if (m_modes[mode] > m_hypotheses.negligible) {
-      parts.push_back(&m_passes[mode].filter);
-      weights.push_back(m_modes[mode]);
-    }
-    m_likeliest = m_modes[mode] > m_modes[m_likeliest] ? mode : m_likeliest;
+  for (size_t which = 0; which < (odometry ? 2 : 1); ++which) {
+    mix(m_apart[which], which == 0 ? 0 : vpMotionModes::alone, which == 0 ? vpMotionModes::alone : vpMotionModes::count);
   }
-  filter = m_passes[m_likeliest].filter;
-  filter.mix(parts, weights);
+  const size_t likeliest = mix(filter, 0, m_modes.possible());
   filter.odometry = m_modes.odometryIsOff() < 0.5 ? vpVlpFilter::Odometry::followed : vpVlpFilter::Odometry::ignored;
-  verdicts = m_passes[m_likeliest].verdicts;
+  verdicts = m_passes[likeliest].verdicts;
   return all;
 }
 
+//! Of the passes of some modes. \return The likeliest of them.
+size_t vpPoseHypothesis::mix(vpVlpFilter &mixed, size_t first, size_t end) const
+{
+  double sum = 0;
+  size_t likeliest = first;
+  for (size_t mode = first; mode < end; ++mode) {
+    sum += m_modes[mode];
+    likeliest = m_modes[mode] > m_modes[likeliest] ? mode : likeliest;
+  }
+  std::vector<const vpVlpFilter *> parts;
+  std::vector<double> weights;
+  for (size_t mode = first; mode < end; ++mode) {
+    if (mode == likeliest || m_modes[mode] > m_hypotheses.negligible * sum) {
+      parts.push_back(&m_passes[mode].filter);
+      weights.push_back(sum > 0 ? m_modes[mode] / sum : 1);
+    }
+  }
+  mixed = m_passes[likeliest].filter;
+  mixed.mix(parts, weights);
+  return likeliest;
+}
+
 //! One mode's: rays are not linear in a long way to where they say, about that path, then.
-void vpPoseHypothesis::attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode,
+void vpPoseHypothesis::attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least,
                                Pass &pass) const
 {
   pass.filter = before;
   m_modes.apply(mode, pass.filter);
-  correct(frame, pass);
+  correct(frame, least, pass);
   for (int round = 0; round < 2 && bends(pass.verdicts); ++round) {
     vpVlpFilter there = before;
     m_modes.apply(mode, there);
@@ -119,13 +161,17 @@ void vpPoseHypothesis::attempt(const vpLampFrame &frame, const vpVlpFilter &befo
       return;
     }
     pass.filter = there;
-    correct(frame, pass);
+    correct(frame, least, pass);
   }
 }
 
-//! Lets each lamp correct at the time of its line.
-void vpPoseHypothesis::correct(const vpLampFrame &frame, Pass &pass) const
+//! Lets each lamp correct at the time of its line. \param least Log likelihood below which the pass is given up.
+void vpPoseHypothesis::correct(const vpLampFrame &frame, double least, Pass &pass) const
 {
+  double open = 0; // what the lamps that are left may add
+  for (const vpFrameLamp &lamp : frame.lamps) {
+    open += lamp.logPeak;
+  }
   pass.verdicts.clear();
   pass.logLikelihood = 0;
   pass.filter.mark(frame.timestamp);
@@ -139,6 +185,10 @@ void vpPoseHypothesis::correct(const vpLampFrame &frame, Pass &pass) const
     }
     pass.logLikelihood += verdict.logLikelihood;
     pass.verdicts.push_back(verdict);
+    open -= lamp.logPeak;
+    if (pass.logLikelihood + std::max(0.0, open) < least) {
+      return;
+    }
   }
   pass.filter.conclude();
 }
@@ -208,6 +258,7 @@ vpPoseHypothesis vpPoseHypothesis::coasted(const vpLampFrame &frame) const
 {
   vpPoseHypothesis other = *this;
   other.filter = m_before;
+  other.m_apart = m_apartBefore;
   other.m_modes = m_modesBefore;
   other.m_changes.assign(frame.lamps.size(), misplaced);
   other.m_logLikelihood = other.weigh(frame, m_since);
@@ -217,18 +268,22 @@ vpPoseHypothesis vpPoseHypothesis::coasted(const vpLampFrame &frame) const
   return other;
 }
 
-double vpPoseHypothesis::logStep(const vpPoseHypothesis &before) const
+vpPoseHypothesis::Begun vpPoseHypothesis::begun(const vpPoseHypothesis &before) const
 {
   const vpHomogeneousMatrix way = before.m_before.now().wMb.inverse() * filter.marked().wMb;
-  const double r = m_hypotheses.reach, h = m_hypotheses.floorStep, t = m_hypotheses.turn;
+  const vpVlpHypotheses &of = m_hypotheses;
   const auto cauchy = [](double x, double scale) {
     return -std::log(M_PI * scale * (1 + x * x / (scale * scale)));
   };
-  const double aside = (way[0][3] * way[0][3] + way[1][3] * way[1][3]) / (r * r);
-  const double logWay = -std::log(2 * M_PI * r * r) - 1.5 * std::log1p(aside) + cauchy(way[2][3], h) +
-                        cauchy(std::atan2(way[1][0], way[0][0]), t),
-               logBegun = -2 * std::log(2 * M_PI) - 3 * std::log(filter.startPlace) - std::log(filter.startTurn);
-  return logWay - logBegun + m_logLikelihood;
+  const auto across = [&way](double scale) { // bivariate
+    const double square = (way[0][3] * way[0][3] + way[1][3] * way[1][3]) / (scale * scale);
+    return -std::log(2 * M_PI * scale * scale) - 1.5 * std::log1p(square);
+  };
+  // Begun about where it was found, which is no prior.
+  const double logBegun = -2 * std::log(2 * M_PI) - 3 * std::log(filter.startPlace) - std::log(filter.startTurn),
+               common = m_logLikelihood - logBegun + cauchy(way[2][3], of.floorStep);
+  return {common + across(of.reach) + cauchy(std::atan2(way[1][0], way[0][0]), of.turn),
+          common + across(of.copyReach) - std::log(2 * M_PI)};
 }
 
 size_t vpPoseHypothesis::accepted() const

@@ -39,11 +39,12 @@ public:
   //! As it would be after the latest frame, were none of that frame's lamps the map's.
   vpPoseHypothesis coasted(const vpLampFrame &frame) const;
 
-  /*!
-    Log likelihood of the frame that it began with, lamps having moved in the picture as if the robot had been
-    put there. \param before The hypothesis from which it was.
-  */
-  double logStep(const vpPoseHypothesis &before) const;
+  //! Log likelihoods of the frame that it began with.
+  struct Begun {
+    double put;    // had the robot been put there, from where it was
+    double copied; // had lamps moved as if it had been
+  };
+  Begun begun(const vpPoseHypothesis &before) const;
   //! Probability that the odometry, where there is any, does not tell the velocity.
   double odometryIsOff() const { return m_modes.odometryIsOff(); }
 
@@ -53,13 +54,15 @@ public:
   void mark(const vpLampFrame &frame, std::vector<vpLampObservation> &observations) const;
   size_t accepted() const;
   double logLikelihood() const { return m_logLikelihood; } // of the latest frame
-  //! Probability that the robot keeps its velocity.
-  double steady() const { return m_modes.steady(); }
+  //! How much less probable the robot's motion is than any, nats.
+  double improbability() const { return m_modes.information(); }
 
+  const vpMotionModes &modes() const { return m_modes; }
   vpVlpFilter filter;
   vpLampTrust trust;
   double logWeight = 0;
   int frames = 0;                // followed
+  double allowed = 0;            // improbability() up to which camera and map are not questioned
   bool borneOut = true;          // else it was put there, which no lamp more than a pose needs has shown since
   std::vector<Verdict> verdicts; // on the lamps of the latest frame
 
@@ -70,11 +73,13 @@ private:
     double logLikelihood;
   };
 
-  void correct(const vpLampFrame &frame, Pass &pass) const;
-  void attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, Pass &pass) const;
+  void correct(const vpLampFrame &frame, double least, Pass &pass) const;
+  void attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least,
+               Pass &pass) const;
   Verdict judge(const vpLamp &lamp, bool asLarge, vpLampSight &sight, const vpVlpFilter &filter,
                 double logUniform) const;
   double weigh(const vpLampFrame &frame, double dt);
+  size_t mix(vpVlpFilter &mixed, size_t first, size_t end) const;
   void compare(const vpLampFrame &frame);
   void learn(const vpLampFrame &frame);
   vpLampExtent expectedExtent(const vpLampFrame &frame, const vpLamp &lamp) const;
@@ -82,9 +87,11 @@ private:
   vpVlpHypotheses m_hypotheses;
   vpMotionModes m_modes;
   std::vector<Pass> m_passes;
-  size_t m_likeliest = 0;
+  std::array<vpVlpFilter, 2> m_apart; // the odometry is off; it is right
+  bool m_parted = false;              // there was odometry in the latest frame
   std::vector<std::string> m_changes; // of each lamp of the latest frame; empty: as before
   vpVlpFilter m_before;               // before the latest frame,
+  std::array<vpVlpFilter, 2> m_apartBefore;
   vpMotionModes m_modesBefore;
   double m_since = 0;                 // s, from the frame before to the latest one
   double m_time = 0;                  // s, of the latest frame

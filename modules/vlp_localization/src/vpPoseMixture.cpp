@@ -15,6 +15,17 @@
 
 BEGIN_VISP_NAMESPACE
 
+void vpPoseMixture::trace(double t) const
+{
+  fprintf(stderr, "%.3f", t);
+  for (const vpPoseHypothesis &place : m_places) {
+    const vpVlpFix f = place.filter.marked();
+    fprintf(stderr, " | w %.5f %s fr %d off %.3f st %.3f acc %zu/%zu x %.4f %.4f s %.5f ll %.1f born %d vy %.4f modes", std::exp(place.logWeight), place.filter.doubtsClaims() ? "WIDE" : "", place.frames, place.odometryIsOff(), 0., place.accepted(), place.verdicts.size(), f.wMb[0][3], f.wMb[1][3], std::sqrt(f.covariance(0,0)), place.logLikelihood(), place.borneOut, place.filter.velocity()(1));
+    for (int k = 0; k < 6; ++k) fprintf(stderr, " %.3f", place.modes()[k]);
+  }
+  fprintf(stderr, "\n");
+}
+
 void vpPoseMixture::lose()
 {
   m_lamps = lamps();
@@ -64,7 +75,7 @@ bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypothes
   double most = std::log(hypotheses.relocation);
   std::vector<double> densities;
   for (const vpFrameLamp &lamp : frame.lamps) {
-    densities.push_back(-std::log(2 * M_PI) - 0.5 * std::log(lamp.sight.covariance.determinant()));
+    densities.push_back(lamp.logPeak);
   }
   std::sort(densities.begin(), densities.end());
   for (size_t k = 0; k < densities.size(); ++k) {
@@ -77,10 +88,15 @@ bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypothes
   return most > now + std::log(hypotheses.negligible);
 }
 
-bool vpPoseMixture::mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const
+bool vpPoseMixture::mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses)
 {
   static const size_t fewest = 3; // lamps, of which two tell any pose
-  return frame.lamps.size() >= fewest && m_places.size() == 1 && likeliest().steady() < 1 - hypotheses.decided;
+  vpPoseHypothesis &place = m_places.front();
+  if (frame.lamps.size() < fewest || m_places.size() > 1 || place.improbability() < place.allowed) {
+    return false;
+  }
+  place.allowed = place.improbability() - std::log(hypotheses.boast);
+  return true;
 }
 
 void vpPoseMixture::addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypotheses, bool isFirst)
@@ -95,16 +111,29 @@ void vpPoseMixture::addElsewhere(const vpLampFrame &frame, vpPoseHypothesis plac
 {
   static const size_t fewest = 2; // lamps that a pose needs
   const vpPoseHypothesis &here = likeliest();
-  const double logStep = place.logStep(here);
+  const vpPoseHypothesis::Begun begun = place.begun(here);
   place.borneOut = place.accepted() > fewest;
-  place.logWeight = std::log(hypotheses.relocation * since * here.odometryIsOff()) + logStep;
+  place.logWeight = std::log(hypotheses.relocation * since * here.odometryIsOff()) + begun.put;
   std::vector<vpPoseHypothesis> more;
   if (!place.borneOut) { // or the lamps have given way to others
     more.push_back(here.coasted(frame));
-    more.back().logWeight = std::log(hypotheses.copy * since) + logStep;
+    more.back().logWeight = std::log(hypotheses.copy * since) + begun.copied;
   }
   more.push_back(std::move(place));
   std::move(more.begin(), more.end(), std::back_inserter(m_places));
+}
+
+//! Whether two places are one: pose and velocity of the other are within what the first is uncertain by.
+bool vpPoseMixture::agree(const vpPoseHypothesis &place, const vpPoseHypothesis &other)
+{
+  const vpVlpFilter::Pose pose = place.filter.pose(), otherPose = other.filter.pose();
+  const Eigen::Matrix3d turn = pose.wMb.linear().transpose() * otherPose.wMb.linear();
+  Eigen::Array<double, 6, 1> apart, sigma;
+  apart << (otherPose.wMb.translation() - pose.wMb.translation()).head<2>(), std::atan2(turn(1, 0), turn(0, 0)),
+      other.filter.velocity() - place.filter.velocity();
+  sigma << pose.covariance.diagonal()(0), pose.covariance.diagonal()(1), pose.covariance.diagonal()(5),
+      place.filter.velocityCovariance().diagonal();
+  return (apart.square() < sigma).all();
 }
 
 void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
@@ -123,6 +152,14 @@ void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
     ++kept;
   }
   m_places.erase(m_places.begin() + static_cast<long>(kept), m_places.end());
+  for (size_t p = 1; p < m_places.size();) {
+    const bool same = m_places[p].filter.doubtsClaims() == likeliest().filter.doubtsClaims() &&
+                      agree(likeliest(), m_places[p]);
+    p += same ? 0 : 1;
+    if (same) {
+      m_places.erase(m_places.begin() + static_cast<long>(p));
+    }
+  }
   double sum = 0;
   for (const vpPoseHypothesis &place : m_places) {
     sum += std::exp(place.logWeight - most);

@@ -17,6 +17,7 @@ BEGIN_VISP_NAMESPACE
 class vpPoseMixture
 {
 public:
+  void trace(double t) const;
   bool empty() const { return m_places.empty(); }
   const vpPoseHypothesis &likeliest() const { return m_places.front(); }
   //! What is known of lamps, wherever the robot is.
@@ -30,8 +31,8 @@ public:
   void follow(const vpLampFrame &frame, const vpVlpFilter &odometry);
   //! Whether the frame is so unlikely from all of them that a robot that was put elsewhere may explain it better.
   bool mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const;
-  //! Whether the robot's motion is such as it would seem under camera and map that are off.
-  bool mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const;
+  //! Whether the robot's motion has become so improbable that camera and map may be off instead.
+  bool mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses);
   //! Camera and map are less exact than they say: the latest frame under such claims. \param isFirst It is the
   //! first frame of the likeliest place as well.
   void addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypotheses, bool isFirst);
@@ -46,6 +47,8 @@ public:
   void tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpLocation &location) const;
 
 private:
+  static bool agree(const vpPoseHypothesis &place, const vpPoseHypothesis &other);
+
   std::vector<vpPoseHypothesis> m_places; // the likeliest first
   vpLampTrust m_lamps;                    // where there is no place
 };

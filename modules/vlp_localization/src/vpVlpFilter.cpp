@@ -150,15 +150,20 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
   // The camera turns about z of b and stays where it is.
   const Eigen::Vector3d axis = pose.wRb.col(2);
   Derivative<2> &H = predicted.H;
+  const auto add = [this, &H](Eigen::Index index, const Eigen::RowVector2d &row) {
+    if (m_P(index, index) > 0) { // what is certain has no part in it
+      H.add(index, row);
+    }
+  };
   for (int k = 0; k < 3; ++k) {
-    H.add(x + k, byPlace.col(k).transpose());
-    H.add(yaw + k, byAngle.col(k).transpose());
-    H.add(mount + k, byMount.col(k).transpose());
+    add(x + k, byPlace.col(k).transpose());
+    add(yaw + k, byAngle.col(k).transpose());
+    add(mount + k, byMount.col(k).transpose());
   }
-  H.add(mount + 3, (byTurn * axis - byPlace * axis.cross(rigidArm)).transpose());
-  H.add(lens, Eigen::RowVector2d::UnitX());
-  H.add(lens + 1, Eigen::RowVector2d::UnitY());
-  H.add(lens + 2, ray.ray.transpose());
+  add(mount + 3, (byTurn * axis - byPlace * axis.cross(rigidArm)).transpose());
+  add(lens, Eigen::RowVector2d::UnitX());
+  add(lens + 1, Eigen::RowVector2d::UnitY());
+  add(lens + 2, ray.ray.transpose());
   if (own >= 0) {
     for (int k = 0; k < 3; ++k) {
       H.add(own + k, -byPlace.col(k).transpose());
@@ -266,32 +271,29 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
   const Eigen::Matrix<double, Values, Values> half = 0.5 * S;
   PH -= K.lazyProduct(half);
   // What is considered keeps its own covariance, so that the columns of the rest are all that changes.
-  static constexpr std::array<std::pair<Index, Index>, 2> estimated = {{{x, mount}, {mark0, lamps}}};
   for (const auto &[from, until] : estimated) {
     vpCovarianceColumns::subtract(m_P.data(), n, from, until, m_K.data(), m_PH.data(), Values);
   }
-  const auto mirror = [this](Eigen::Index from, Eigen::Index until) {
-    for (Eigen::Index k = from; k < until; ++k) {
-      for (const auto &[first, end] : estimated) {
-        for (Eigen::Index l = first; l < end; ++l) {
-          m_P(l, k) = m_P(k, l);
-        }
-      }
-    }
-  };
-  mirror(mount, mark0);
-  mirror(lamps, n);
   for (const Index first : {x, mark0}) {
     if (!m_aside) {
       carryAlong(first, {K.row(first).dot(innovation), K.row(first + 1).dot(innovation)});
     }
   }
-  for (const auto &[from, until] : estimated) { // but for rounding it is so
-    for (Eigen::Index k = from; k < until; ++k) {
-      for (const auto &[first, end] : estimated) {
-        for (Eigen::Index l = first; l < std::min<Eigen::Index>(end, k); ++l) {
-          m_P(l, k) = m_P(k, l) = 0.5 * (m_P(l, k) + m_P(k, l));
-        }
+  mirror();
+}
+
+//! Makes the covariance symmetric, after what changed the columns of what is estimated.
+void vpVlpFilter::mirror()
+{
+  const Eigen::Index n = m_P.rows();
+  for (Eigen::Index column = 0; column < n; ++column) {
+    const bool considered = (column >= mount && column < mark0) || column >= lamps;
+    double *out = m_P.data() + column * n;
+    for (const auto &[from, until] : estimated) {
+      const Eigen::Index end = considered ? until : std::min<Eigen::Index>(until, column);
+      const double *in = m_P.data() + from * n + column;
+      for (Eigen::Index row = from; row < end; ++row, in += n) {
+        out[row] = *in;
       }
     }
   }
@@ -301,16 +303,18 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
   The covariance of a place that was corrected by \e shift. A turn about a lamp, which its ray does not tell,
   is to stay untold then, else corrections alone would tell the heading. So the covariance is that of the
   right-invariant error (Barrau and Bonnabel 2017), in which an error of the heading turns the place about the
-  origin of w.
+  origin of w. Of the columns of what is estimated alone: mirror() is to follow.
 */
 void vpVlpFilter::carryAlong(Index first, const Eigen::Vector2d &shift)
 {
   const Eigen::Vector2d turned(-shift.y(), shift.x());
   for (int k = 0; k < 2; ++k) {
-    m_P.row(first + k) += turned(k) * m_P.row(first + yaw);
-  }
-  for (int k = 0; k < 2; ++k) {
     m_P.col(first + k) += turned(k) * m_P.col(first + yaw);
+  }
+  for (const auto &[from, until] : estimated) {
+    for (Eigen::Index column = from; column < until; ++column) {
+      m_P.col(column).segment<2>(first) += m_P(first + yaw, column) * turned;
+    }
   }
 }
 

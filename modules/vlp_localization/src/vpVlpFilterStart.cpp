@@ -100,6 +100,7 @@ void vpVlpFilter::standAside(const Eigen::Matrix<double, 9, 1> &path)
   m_offset(yaw) = std::remainder(m_offset(yaw), 2 * M_PI);
   m_x.head<9>() = path;
   carryAlong(x, -m_offset.head<2>());
+  mirror();
   m_aside = true;
 }
 
@@ -127,6 +128,7 @@ void vpVlpFilter::conclude()
       m_x(first + yaw) = std::remainder(m_x(first + yaw), 2 * M_PI);
       carryAlong(first, m_offset.segment<2>(first));
     }
+    mirror();
   }
   if (m_noise >= 1) {
     m_common.setZero();

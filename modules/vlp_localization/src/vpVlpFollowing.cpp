@@ -70,15 +70,17 @@ const vpLampFrame &vpVlpLocalizer::frameOf(const std::vector<vpLampObservation> 
 {
   vpLampFrame &frame = m_scratch->frame;
   frame.rig = &m_rig;
-  frame.lineTime = m_rig.lineTiming().meanLineTime();
+  frame.lineTime = m_scratch->lineTime;
   frame.timestamp = time;
   frame.logUniform = -std::log(m_rig.width / m_rig.camera.get_px() * m_rig.height / m_rig.camera.get_py());
   frame.lamps.clear();
   for (size_t i : usable) {
     const vpLampObservation &seen = observations[i];
     if (const vpLamp *lamp = m_scratch->lamp(m_map, seen)) {
-      frame.lamps.push_back({i, lamp, &seen, time + (compensateShutter ? seen.time : 0),
-                             vpLampSight::from(*lamp, seen, m_rig.camera)});
+      vpLampSight sight = vpLampSight::from(*lamp, seen, m_rig.camera);
+      const double logPeak = -std::log(2 * M_PI) - 0.5 * std::log(sight.covariance.determinant());
+      frame.lamps.push_back(
+          {i, lamp, &seen, time + (compensateShutter ? seen.time : 0), std::move(sight), logPeak});
     }
   }
   std::sort(frame.lamps.begin(), frame.lamps.end(),
@@ -135,7 +137,9 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
   } else if (!location.fix.ambiguous) {
     const vpPoseHypothesis wider = placeAt(location.fix, frame, false, true);
     m_places->restart(placeAt(location.fix, frame, false, false));
-    m_places->addWider(wider, hypotheses, true);
+    if (location.fix.degreesOfFreedom > 0) {
+      m_places->addWider(wider, hypotheses, true);
+    }
     settle(location);
   }
 }
@@ -144,6 +148,7 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
 void vpVlpLocalizer::settle(vpVlpLocation &location)
 {
   m_places->reduce(hypotheses);
+  if (getenv("VLP_TRACE")) m_places->trace(location.timestamp);
   filter = m_places->likeliest().filter;
   m_places->tell(m_scratch->frame, hypotheses, location);
 }

@@ -166,9 +166,8 @@ const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &fra
     std::vector<vpRect> &windows = m_scratch->windows;
     windows.clear();
     if (filter.started()) {
-      const vpLineTiming timing = m_rig.lineTiming();
-      const double middle = timing.middleAt(0.5 * (timing.lines() - 1));
-      vpLampWindows::expect(filterAt(frame.timestamp + middle), m_map, m_rig, timing.meanLineTime(), windows);
+      vpLampWindows::expect(filterAt(frame.timestamp + m_scratch->halfReadout), m_map, m_rig,
+                            m_scratch->lineTime, windows);
     }
     return tracker.track(frame, windows);
   }

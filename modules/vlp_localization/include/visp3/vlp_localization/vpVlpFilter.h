@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -228,6 +229,7 @@ private:
     mark0 = lens + 3, // x to pitch, at the mark
     lamps = mark0 + 6
   };
+  static constexpr std::array<std::pair<Index, Index>, 2> estimated = {{{x, mount}, {mark0, lamps}}};
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
 
@@ -268,6 +270,7 @@ private:
   void startFrom(const vpHomogeneousMatrix &wMb, double time);
   void standAside(const Eigen::Matrix<double, 9, 1> &path);
   void carryAlong(Index first, const Eigen::Vector2d &shift);
+  void mirror();
   //! \param R Covariance of what was measured.
   template <int Values>
   void measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
