@@ -354,7 +354,8 @@ TEST(VlpFilter, MixtureHasTheMeanAndCovarianceOfItsParts)
     const double apart = calm.wMb[i][3] - roused.wMb[i][3];
     EXPECT_NEAR(mixture.wMb[i][3], 0.75 * calm.wMb[i][3] + 0.25 * roused.wMb[i][3], 1e-12);
     EXPECT_NEAR(mixture.covariance(i, i),
-                0.75 * calm.covariance(i, i) + 0.25 * roused.covariance(i, i) + 0.75 * 0.25 * apart * apart, 1e-15);
+                0.75 * calm.covariance(i, i) + 0.25 * roused.covariance(i, i) + 0.75 * 0.25 * apart * apart,
+                1e-15);
   }
   mixed = parts[1];
   mixed.mix({&parts[0]}, {1});

@@ -26,8 +26,7 @@ void vpLampWindows::expect(const vpVlpFilter &filter, const vpLampMap &map, cons
       continue;
     }
     Eigen::Vector2d middle, motion;
-    const Eigen::Vector2d extent =
-        vpLampTrust::extentOf(lamp, pose.wMb, filter.velocity(), rig, lineTime);
+    const Eigen::Vector2d extent = vpLampTrust::extentOf(lamp, pose.wMb, filter.velocity(), rig, lineTime);
     if (!vpLampTrust::motionOf(lamp.position, pose.wMb, filter.velocity(), rig, middle, motion)) {
       continue;
     }

@@ -49,7 +49,9 @@ void vpMotionModes::apply(size_t mode, vpVlpFilter &filter) const
   const vpVlpHypotheses &of = m_hypotheses;
   const std::array<double, count> shares = {of.steady, of.gentle, of.lively, 1, of.steady, of.onWheels};
   using Odometry = vpVlpFilter::Odometry;
-  filter.odometry = mode < alone ? Odometry::ignored : mode == alone ? Odometry::measured : Odometry::followed;
+  filter.odometry = mode < alone    ? Odometry::ignored
+                    : mode == alone ? Odometry::measured
+                                    : Odometry::followed;
   filter.calm(shares[mode]);
 }
 

@@ -45,7 +45,7 @@ public:
 private:
   vpVlpHypotheses m_hypotheses;
   bool m_odometry = false;
-  double m_right;                         // the odometry is
+  double m_right; // the odometry is
   std::array<double, 2> m_changed{};
   double m_information = 0;
   std::array<double, alone> m_without;    // kinds of motion, where it is not,

@@ -42,8 +42,8 @@ bool bends(const std::vector<vpPoseHypothesis::Verdict> &verdicts)
 vpPoseHypothesis::vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses,
                                    const vpLampTrust &trust)
     : filter(filter), trust(trust), m_hypotheses(hypotheses), m_modes(hypotheses),
-      m_passes(vpMotionModes::count, Pass{filter, {}, 0}), m_apart{filter, filter}, m_before(filter),
-      m_apartBefore{filter, filter}, m_modesBefore(hypotheses)
+      m_passes(vpMotionModes::count, Pass{filter, {}, 0}), m_apart{filter, filter},
+      m_before(filter), m_apartBefore{filter, filter}, m_modesBefore(hypotheses)
 {
 }
 
@@ -79,8 +79,8 @@ double vpPoseHypothesis::follow(const vpLampFrame &frame)
 }
 
 /*!
-  Goes on under each mode, and mixes what comes of them (Blom and Bar-Shalom 1988). Whether the odometry is right
-  has a filter each, as what tells it takes many frames; the kinds of motion share theirs.
+  Goes on under each mode, and mixes what comes of them (Blom and Bar-Shalom 1988). Whether the odometry is
+  right has a filter each, as what tells it takes many frames; the kinds of motion share theirs.
 */
 double vpPoseHypothesis::weigh(const vpLampFrame &frame, double dt)
 {
@@ -99,14 +99,17 @@ double vpPoseHypothesis::weigh(const vpLampFrame &frame, double dt)
     for (size_t to = 0; to < 2; ++to) {
       m_apart[to].takeOdometry(filter);
       const double from = m_modes.changed(to);
-      m_apart[to].mix({&before[to], &before[1 - to]}, {1 - from, from});
+      if (from > m_hypotheses.negligible) {
+        m_apart[to].mix({&before[to], &before[1 - to]}, {1 - from, from});
+      }
     }
   }
   m_parted = odometry;
   std::array<double, vpMotionModes::count> logLikelihood{};
   std::array<double, 2> most; // of those that share a filter
   most.fill(-std::numeric_limits<double>::infinity());
-  for (size_t k = 0; k < m_modes.possible(); ++k) { // the likeliest one first, so that others are given up soon
+  for (size_t k = 0; k < m_modes.possible();
+       ++k) { // the likeliest one first, so that others are given up soon
     const size_t mode = k == 0 ? m_modes.likeliest() : k - (k <= m_modes.likeliest() ? 1 : 0);
     const size_t which = vpMotionModes::byOdometry(mode) ? 1 : 0;
     const double logPrior = std::log(m_modes[mode]);
@@ -117,10 +120,12 @@ double vpPoseHypothesis::weigh(const vpLampFrame &frame, double dt)
   }
   const double all = m_modes.correct(logLikelihood);
   for (size_t which = 0; which < (odometry ? 2 : 1); ++which) {
-    mix(m_apart[which], which == 0 ? 0 : vpMotionModes::alone, which == 0 ? vpMotionModes::alone : vpMotionModes::count);
+    mix(m_apart[which], which == 0 ? 0 : vpMotionModes::alone,
+        which == 0 ? vpMotionModes::alone : vpMotionModes::count);
   }
   const size_t likeliest = mix(filter, 0, m_modes.possible());
-  filter.odometry = m_modes.odometryIsOff() < 0.5 ? vpVlpFilter::Odometry::followed : vpVlpFilter::Odometry::ignored;
+  filter.odometry =
+      m_modes.odometryIsOff() < 0.5 ? vpVlpFilter::Odometry::followed : vpVlpFilter::Odometry::ignored;
   verdicts = m_passes[likeliest].verdicts;
   return all;
 }
@@ -165,7 +170,8 @@ void vpPoseHypothesis::attempt(const vpLampFrame &frame, const vpVlpFilter &befo
   }
 }
 
-//! Lets each lamp correct at the time of its line. \param least Log likelihood below which the pass is given up.
+//! Lets each lamp correct at the time of its line. \param least Log likelihood below which the pass is given
+//! up.
 void vpPoseHypothesis::correct(const vpLampFrame &frame, double least, Pass &pass) const
 {
   double open = 0; // what the lamps that are left may add
@@ -280,7 +286,8 @@ vpPoseHypothesis::Begun vpPoseHypothesis::begun(const vpPoseHypothesis &before) 
     return -std::log(2 * M_PI * scale * scale) - 1.5 * std::log1p(square);
   };
   // Begun about where it was found, which is no prior.
-  const double logBegun = -2 * std::log(2 * M_PI) - 3 * std::log(filter.startPlace) - std::log(filter.startTurn),
+  const double logBegun =
+                   -2 * std::log(2 * M_PI) - 3 * std::log(filter.startPlace) - std::log(filter.startTurn),
                common = m_logLikelihood - logBegun + cauchy(way[2][3], of.floorStep);
   return {common + across(of.reach) + cauchy(std::atan2(way[1][0], way[0][0]), of.turn),
           common + across(of.copyReach) - std::log(2 * M_PI)};

@@ -57,13 +57,12 @@ public:
   //! How much less probable the robot's motion is than any, nats.
   double improbability() const { return m_modes.information(); }
 
-  const vpMotionModes &modes() const { return m_modes; }
   vpVlpFilter filter;
   vpLampTrust trust;
   double logWeight = 0;
-  int frames = 0;                // followed
-  double allowed = 0;            // improbability() up to which camera and map are not questioned
-  bool borneOut = true;          // else it was put there, which no lamp more than a pose needs has shown since
+  int frames = 0;       // followed
+  double allowed = 0;   // improbability() up to which camera and map are not questioned
+  bool borneOut = true; // else it was put there, which no lamp more than a pose needs has shown since
   std::vector<Verdict> verdicts; // on the lamps of the latest frame
 
 private:
@@ -93,9 +92,9 @@ private:
   vpVlpFilter m_before;               // before the latest frame,
   std::array<vpVlpFilter, 2> m_apartBefore;
   vpMotionModes m_modesBefore;
-  double m_since = 0;                 // s, from the frame before to the latest one
-  double m_time = 0;                  // s, of the latest frame
-  double m_logLikelihood = 0;         // of the latest frame
+  double m_since = 0;         // s, from the frame before to the latest one
+  double m_time = 0;          // s, of the latest frame
+  double m_logLikelihood = 0; // of the latest frame
 };
 
 END_VISP_NAMESPACE

@@ -15,17 +15,6 @@
 
 BEGIN_VISP_NAMESPACE
 
-void vpPoseMixture::trace(double t) const
-{
-  fprintf(stderr, "%.3f", t);
-  for (const vpPoseHypothesis &place : m_places) {
-    const vpVlpFix f = place.filter.marked();
-    fprintf(stderr, " | w %.5f %s fr %d off %.3f st %.3f acc %zu/%zu x %.4f %.4f s %.5f ll %.1f born %d vy %.4f modes", std::exp(place.logWeight), place.filter.doubtsClaims() ? "WIDE" : "", place.frames, place.odometryIsOff(), 0., place.accepted(), place.verdicts.size(), f.wMb[0][3], f.wMb[1][3], std::sqrt(f.covariance(0,0)), place.logLikelihood(), place.borneOut, place.filter.velocity()(1));
-    for (int k = 0; k < 6; ++k) fprintf(stderr, " %.3f", place.modes()[k]);
-  }
-  fprintf(stderr, "\n");
-}
-
 void vpPoseMixture::lose()
 {
   m_lamps = lamps();
@@ -129,8 +118,8 @@ bool vpPoseMixture::agree(const vpPoseHypothesis &place, const vpPoseHypothesis 
   const vpVlpFilter::Pose pose = place.filter.pose(), otherPose = other.filter.pose();
   const Eigen::Matrix3d turn = pose.wMb.linear().transpose() * otherPose.wMb.linear();
   Eigen::Array<double, 6, 1> apart, sigma;
-  apart << (otherPose.wMb.translation() - pose.wMb.translation()).head<2>(), std::atan2(turn(1, 0), turn(0, 0)),
-      other.filter.velocity() - place.filter.velocity();
+  apart << (otherPose.wMb.translation() - pose.wMb.translation()).head<2>(),
+      std::atan2(turn(1, 0), turn(0, 0)), other.filter.velocity() - place.filter.velocity();
   sigma << pose.covariance.diagonal()(0), pose.covariance.diagonal()(1), pose.covariance.diagonal()(5),
       place.filter.velocityCovariance().diagonal();
   return (apart.square() < sigma).all();
@@ -138,13 +127,14 @@ bool vpPoseMixture::agree(const vpPoseHypothesis &place, const vpPoseHypothesis 
 
 void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
 {
-  std::stable_sort(m_places.begin(), m_places.end(), [](const vpPoseHypothesis &a, const vpPoseHypothesis &b) {
-    return a.logWeight > b.logWeight;
-  });
+  std::stable_sort(
+      m_places.begin(), m_places.end(),
+      [](const vpPoseHypothesis &a, const vpPoseHypothesis &b) { return a.logWeight > b.logWeight; });
   const double most = m_places.front().logWeight;
   const auto negligible = [&](const vpPoseHypothesis &place) {
     return place.logWeight < most + std::log(hypotheses.negligible) ||
-           (&place != &m_places.front() && place.filter.state(place.filter.pose()) == vpVlpFilter::State::lost);
+           (&place != &m_places.front() &&
+            place.filter.state(place.filter.pose()) == vpVlpFilter::State::lost);
   };
   static const size_t many = 4;
   size_t kept = 1;
@@ -189,7 +179,8 @@ void vpPoseMixture::tell(const vpLampFrame &frame, const vpVlpHypotheses &hypoth
     const vpVlpFix there = place.filter.marked();
     const Eigen::Matrix<double, 6, 1> apart = pose.stepTo(vpBasePose::of(there.wMb));
     fix.covariance += weight * apart * apart.transpose();
-    if (apart.head<2>().norm() > place.filter.trackingSigma || std::abs(apart(5)) > place.filter.trackingYaw) {
+    if (apart.head<2>().norm() > place.filter.trackingSigma ||
+        std::abs(apart(5)) > place.filter.trackingYaw) {
       elsewhere += weight;
       if (elsewhere == weight) {
         fix.other = there.wMb;

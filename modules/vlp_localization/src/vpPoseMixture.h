@@ -17,7 +17,6 @@ BEGIN_VISP_NAMESPACE
 class vpPoseMixture
 {
 public:
-  void trace(double t) const;
   bool empty() const { return m_places.empty(); }
   const vpPoseHypothesis &likeliest() const { return m_places.front(); }
   //! What is known of lamps, wherever the robot is.
@@ -29,12 +28,13 @@ public:
   void restart(const vpPoseHypothesis &place);
   //! All places go on to a frame. \param odometry Has the samples that came meanwhile.
   void follow(const vpLampFrame &frame, const vpVlpFilter &odometry);
-  //! Whether the frame is so unlikely from all of them that a robot that was put elsewhere may explain it better.
+  //! Whether the frame is so unlikely from all of them that a robot that was put elsewhere may explain it
+  //! better.
   bool mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const;
   //! Whether the robot's motion has become so improbable that camera and map may be off instead.
   bool mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses);
-  //! Camera and map are less exact than they say: the latest frame under such claims. \param isFirst It is the
-  //! first frame of the likeliest place as well.
+  //! Camera and map are less exact than they say: the latest frame under such claims. \param isFirst It is
+  //! the first frame of the likeliest place as well.
   void addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypotheses, bool isFirst);
   //! The robot was put there with the latest frame. \param since s, since the frame before.
   void addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place, const vpVlpHypotheses &hypotheses,

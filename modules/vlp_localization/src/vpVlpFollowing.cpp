@@ -148,7 +148,6 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
 void vpVlpLocalizer::settle(vpVlpLocation &location)
 {
   m_places->reduce(hypotheses);
-  if (getenv("VLP_TRACE")) m_places->trace(location.timestamp);
   filter = m_places->likeliest().filter;
   m_places->tell(m_scratch->frame, hypotheses, location);
 }
@@ -173,7 +172,8 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
              off = m_places->mayBeOff(m_scratch->frame, hypotheses);
   if ((elsewhere || off) && aloneIsGood()) {
     if (elsewhere) {
-      m_places->addElsewhere(m_scratch->frame, placeAt(alone, m_scratch->frame, true, false), hypotheses, since);
+      m_places->addElsewhere(m_scratch->frame, placeAt(alone, m_scratch->frame, true, false), hypotheses,
+                             since);
     }
     if (off) {
       m_places->addWider(placeAt(alone, m_scratch->frame, false, true), hypotheses, false);

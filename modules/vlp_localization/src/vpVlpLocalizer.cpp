@@ -145,8 +145,7 @@ void vpVlpLocalizer::locate(vpVlpLocation &location)
     m_lastPose->fix = location.fix;
     m_lastPose->time = location.timestamp;
   }
-  location.tracked =
-      carried && location.fix.valid && filter.started() && m_places->likeliest().frames > 0;
+  location.tracked = carried && location.fix.valid && filter.started() && m_places->likeliest().frames > 0;
   location.state = filter.state(location.fix);
 }
 

@@ -16,8 +16,8 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  What vpVlpLocalizer works on within a frame and never changes, or kept so that the next one takes no memory: each is assigned to
-  before it is read, and none means anything from frame to frame.
+  What vpVlpLocalizer works on within a frame and never changes, or kept so that the next one takes no memory:
+  each is assigned to before it is read, and none means anything from frame to frame.
 */
 struct vpVlpLocalizer::Scratch {
   Scratch(const vpVlpRig &rig, const vpLampMap &map)
@@ -36,8 +36,8 @@ struct vpVlpLocalizer::Scratch {
     return found == lampOf.end() ? nullptr : &map.lamps[found->second];
   }
 
-  double lineTime;    // s, from line to line
-  double halfReadout; // s, from a frame's time stamp to its middle line
+  double lineTime;                                // s, from line to line
+  double halfReadout;                             // s, from a frame's time stamp to its middle line
   std::unordered_map<std::string, size_t> lampOf; // index into the map, by id
   vpVlpFilter there;                              // a filter that goes on to some other time
   vpLampFrame frame;

@@ -153,8 +153,8 @@ public:
   double unrest() const { return m_unrest; }
 
   /*!
-    Mean and covariance of a mixture. \param parts Copies of one filter that went on under different hypotheses
-    up to the same time, this one among them or not. \param weights Of each; their sum is 1.
+    Mean and covariance of a mixture. \param parts Copies of one filter that went on under different
+    hypotheses up to the same time, this one among them or not. \param weights Of each; their sum is 1.
   */
   void mix(const std::vector<const vpVlpFilter *> &parts, const std::vector<double> &weights);
 
@@ -303,7 +303,7 @@ private:
   double m_imageSpeed = 0;                                 // px/s, of the fastest of them
   Eigen::Matrix4d m_common =
       Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
-  double m_unrest = 1;        // share of the random accelerations
+  double m_unrest = 1;         // share of the random accelerations
   double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 

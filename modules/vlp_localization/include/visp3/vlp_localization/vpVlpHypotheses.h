@@ -24,8 +24,8 @@ struct VISP_EXPORT vpVlpHypotheses {
 
   // Whether the odometry tells its velocity.
   double right = 0.95;  // where it begins
-  double slip = 0.02;   // 1/s, at which it ceases to
-  double grip = 0.3;    // 1/s, at which it does so again
+  double slip = 0.0003; // 1/s, at which it ceases to
+  double grip = 3;      // 1/s, at which it does so again
 
   // Whether it was put elsewhere, wheels standing or not.
   double relocation = 0.01; // 1/s
@@ -37,11 +37,11 @@ struct VISP_EXPORT vpVlpHypotheses {
   double displaced = 0.001; // the lamp, off by what vpVlpLocalizer::mapTolerance says
   double stranger = 0.001;  // another light, anywhere in the picture
   double staying = 0.99;    // what it was in the frame before
-  double copy = 0.005;      // 1/s, at which two lamps give way to two others as far apart, such as their mirror
-  double copyReach = 1;     // images; m, how far these are: bivariate Cauchy distribution, in any direction
+  double copy = 0.005;  // 1/s, at which two lamps give way to two others as far apart, such as their mirror
+  double copyReach = 1; // images; m, how far these are: bivariate Cauchy distribution, in any direction
 
   // Whether rig and map are as exact as they say.
-  double boast = 0.001; // they are off by vpVlpFilter's claimedTilt and claimedPlace more
+  double boast = 0.01; // they are off by vpVlpFilter's claimedTilt and claimedPlace more
 
   double negligible = 1e-3; // a hypothesis less probable than this is dropped
   double decided = 0.99;    // else the pose is ambiguous, where the other one is elsewhere

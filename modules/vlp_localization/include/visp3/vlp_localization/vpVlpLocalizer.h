@@ -27,9 +27,9 @@ struct vpLampFrame;
 
 //! What one frame gave.
 struct VISP_EXPORT vpVlpLocation {
-  double timestamp = 0; // s, of the frame
-  vpVlpFix fix;         // fix.valid false and fix.refusal where there is no position
-  bool tracked = false; // the filter's, not of this frame alone
+  double timestamp = 0;   // s, of the frame
+  vpVlpFix fix;           // fix.valid false and fix.refusal where there is no position
+  bool tracked = false;   // the filter's, not of this frame alone
   bool relocated = false; // the robot seems to have been put there, which no third lamp has borne out yet
   vpVlpFilter::State state = vpVlpFilter::State::starting; // of fix, by its covariance
   std::vector<vpLampObservation> observations; // every lamp-like region, accepted where it counts for the fix
