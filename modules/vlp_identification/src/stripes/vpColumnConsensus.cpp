@@ -14,6 +14,8 @@
 
 #include <visp3/vlp_core/vpBrighter.h>
 
+#include "vpPixelNoise.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -227,21 +229,6 @@ void SharedModulation::iterate()
   share();
 }
 
-//! Standard deviation of a region's pixels, grey levels: what neighbours differ by, whatever pattern they
-//! show.
-double noiseOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
-{
-  static const double least = 0.3,
-                      perMedian = 0.954; // 8 bits round; median of two Gaussian pixels' difference
-  std::vector<double> differences;
-  for (int line = box.y; line < box.br().y; ++line) {
-    for (int x = box.x; x + 1 < box.br().x; ++x) {
-      differences.push_back(std::abs(lines(line, x + 1) - lines(line, x)));
-    }
-  }
-  return differences.empty() ? least : std::max(least, medianOf(differences) / perMedian);
-}
-
 /*!
   Means of the lines of a region, strip by strip, above its darkest twentieth; of those inside the lamp, where
   its outline is known.
@@ -296,7 +283,7 @@ vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &
   profile.logExposureSigma = timing.logExposureSigma();
   const int width = std::max(narrowest, roi.box.width / mostStrips);
   SharedModulation shared(stripsOf(lines, roi.box, fit.outline, width),
-                          noiseOf(lines, roi.box) / std::sqrt(width));
+                          vpPixelNoise(lines, roi.box) / std::sqrt(width));
   for (int round = 0; round < rounds; ++round) {
     shared.iterate();
   }
