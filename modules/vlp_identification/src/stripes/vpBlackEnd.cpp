@@ -49,13 +49,17 @@ vpBlackEnd::vpBlackEnd(const std::vector<Line> &lines, double noise) : m_noise(n
   for (int step = 0; step < steps; ++step) {
     double more = 0, slope = 0; // black pixels than are, by their logarithm's noise
     for (const Line &line : lines) {
-      if (line.mean < above * m_noise) {
-        const double z = lightOf(line.mean / m_noise), black = probability(rounding / m_noise - z);
-        more += line.samples * black - line.black;
-        slope += line.samples * density(rounding / m_noise - z) * (shown(z) / probability(z) - rounding / m_noise);
+      const double z = line.mean < above * m_noise ? lightOf(line.mean / m_noise) : above;
+      if (z > below && z < above) {
+        const double at = rounding / m_noise;
+        more += line.samples * probability(at - z) - line.black;
+        slope += line.samples * density(at - z) * (shown(z) / probability(z) - at);
       }
     }
-    const double factor = std::clamp(std::exp(-more / std::max(slope, 1e-9)), 1 / farthest, farthest);
+    if (!(slope > 0)) {
+      break; // no line tells
+    }
+    const double factor = std::clamp(std::exp(-more / slope), 1 / farthest, farthest);
     m_noise *= factor;
     if (std::abs(factor - 1) < close) {
       break;

@@ -20,7 +20,7 @@ inline double vpPixelNoise(const cv::Mat_<unsigned char> &lines, const cv::Rect 
 {
   static const double least = 0.3,
                       perMedian = 0.954; // 8 bits round; median of two Gaussian pixels' difference
-  static const int enough = 10000; // pairs, for a hundredth of it
+  static const int enough = 10000;       // pairs, for a hundredth of it
   const int step = 1 + box.area() / enough;
   std::array<int, 256> pairs{}; // of each difference
   int all = 0;

@@ -118,7 +118,7 @@ double subtractDarkest(std::vector<double> &light)
 double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
               double noise, vpStripeProfile &profile)
 {
-  static const double rounding = 0.5, above = 2; // grey levels; deviations, from where means are as they seem
+  static const double rounding = 1, above = 2; // grey levels; deviations, from where means are as they seem
   if (noise < rounding || chords.empty() ||
       background + *std::min_element(profile.light.begin(), profile.light.end()) > above * noise) {
     return background;
