@@ -10,7 +10,6 @@
 #include <visp3/vlp_core/vpBrighter.h>
 
 #include "vpBlackEnd.h"
-#include "vpPixelNoise.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -113,7 +112,8 @@ double subtractDarkest(std::vector<double> &light)
 
 /*!
   Takes light and noise of the lines, which \e chords are, to what they were before the grey scale's dark end
-  clipped them. \param noise Of a pixel, grey levels. \return The same of the surroundings, grey levels.
+  clipped them. \param noise Of a pixel, grey levels, about. \return The same of the surroundings, grey
+  levels.
 */
 double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
               double noise, vpStripeProfile &profile)
@@ -134,7 +134,7 @@ double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &ch
   for (size_t i = 0; i < shown.size(); ++i) {
     const vpBlackEnd::Light light = end.before(shown[i].mean);
     profile.light[i] = light.mean - background;
-    profile.sigma[i] = std::max(noise, light.sigma) / std::sqrt(shown[i].samples);
+    profile.sigma[i] = std::max(profile.sigma[i], light.sigma / std::sqrt(shown[i].samples));
   }
   return background;
 }
@@ -185,7 +185,7 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();
   Agreement agreement;
-  const double noise = fit.noise > 0 ? std::max(fit.noise, 0.3) : vpPixelNoise(lines, roi.box);
+  const double noise = std::max(fit.noise, 0.3);
   const std::vector<Chord> chords = chordsOf(soft ? middle : nearlyAll);
   for (const Chord &chord : chords) {
     const LineLight line(lines[chord.line], chord, fit.background);
