@@ -291,6 +291,61 @@ TEST(LedDetector, ClippedStripesAreAsUncertainAsTheyAre)
   EXPECT_LT(std::sqrt(duty / count), 2);
 }
 
+//! Black clips the noise of dark lines, and makes these brighter than they are: no pulse is shorter for it.
+TEST(LedDetector, NoiseThatBlackClipsLeavesDutiesAsTheyAre)
+{
+  double squares = 0, sum = 0; // of normalised errors
+  int count = 0;
+  for (int phase = 0; phase < 40; ++phase) {
+    vpLampPicture painted = picture();
+    painted.background = 3;
+    painted.noise = 25;
+    painted.seed = static_cast<unsigned int>(phase + 1);
+    painted.lamps.resize(1);
+    painted.lamps[0].centre = {200.3, 160.6};
+    painted.lamps[0].a = painted.lamps[0].b = 75;
+    painted.lamps[0].frequency = 5000 + 31.7 * phase;
+    painted.lamps[0].phase = phase / 40.0;
+    painted.lamps[0].pwm(0.3);
+    vpLedDetector detector(vpUpwardRig(400, 320), map());
+    detector.detect(painted.render());
+    ASSERT_FALSE(detector.observations().empty());
+    const vpStripeFeatures &seen = detector.observations()[0].features;
+    const double off = (seen.duty - 0.3) / seen.dutySigma;
+    ASSERT_TRUE(std::isfinite(off));
+    squares += off * off;
+    sum += off;
+    ++count;
+  }
+  EXPECT_LT(std::sqrt(squares / count), 1.5);
+  EXPECT_LT(std::abs(sum) / count, 3 / std::sqrt(count));
+}
+
+//! Two periods of two pulses have the edges of four: more than enough for a frequency.
+TEST(LedDetector, TwoPeriodsOfTwoPulsesTellTheirFrequency)
+{
+  vpLampMap two = map();
+  two.lamps[0].modulation.kind = vpModulation::Kind::twoPulse;
+  two.lamps[0].modulation.frequency = 330;
+  two.lamps[0].modulation.duty = 0.25;
+  two.lamps[0].modulation.phaseDifference = 0.34;
+  two.lamps.resize(1);
+  for (int phase = 0; phase < 20; ++phase) {
+    vpLampPicture painted = picture();
+    painted.lamps.resize(1);
+    painted.lamps[0].centre = {200.3, 160.6};
+    painted.lamps[0].a = painted.lamps[0].b = 75;
+    painted.lamps[0].frequency = 330;
+    painted.lamps[0].phase = phase / 20.0;
+    painted.lamps[0].twoPulse(0.25, 0.34);
+    vpLedDetector detector(vpUpwardRig(400, 320), two);
+    detector.detect(painted.render());
+    ASSERT_EQ(detector.observations().size(), 1u);
+    EXPECT_EQ(detector.observations()[0].id, two.lamps[0].id) << phase;
+    EXPECT_NEAR(detector.observations()[0].features.frequency, 330, 1) << phase;
+  }
+}
+
 //! Their region holds both, and what is found in its parts may be the same lamp.
 // A wave of twice the frequency explains two short pulses as well, where the lamp may be dark in between.
 TEST(LedDetector, NoiseMakesNoFrequencyThatIsNone)

@@ -226,7 +226,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
                                vpChordShape::longestGap(extent.roi) + vpDemodulation::thick);
     }
     vpRimFit::allowForGlow(extent.fit, middles[chosen]);
-    extent.fit.background = light.background();
+    extent.fit.background = light.background(extent.roi.box);
     extent.fit.noise = light.pixelNoise();
     return extent;
   }

@@ -81,23 +81,32 @@ vpDemodulation::vpDemodulation(const cv::Mat_<unsigned char> &lines, const std::
   dropOthers();
 }
 
+double vpDemodulation::background(const cv::Rect &lamp) const
+{
+  std::vector<float> beside;
+  for (const vpLitBand &band : m_bands) {
+    const auto width = static_cast<long>(band.dark.size()),
+               from = std::clamp<long>(lamp.x - m_window.x, 0, width),
+               to = std::clamp<long>(lamp.br().x - m_window.x, from, width);
+    beside.insert(beside.end(), band.dark.begin(), band.dark.begin() + from);
+    beside.insert(beside.end(), band.dark.begin() + to, band.dark.end());
+  }
+  if (beside.empty()) {
+    return lamp.empty() ? 0 : background();
+  }
+  const auto middle = beside.begin() + static_cast<long>(beside.size() / 2);
+  std::nth_element(beside.begin(), middle, beside.end());
+  return *middle;
+}
+
 //! What shines on dark lines as well is no light of this lamp.
 void vpDemodulation::dropOthers()
 {
   static const float share = 0.4f, least = 3; // of the light; grey levels
-  std::vector<float> all;
-  for (const vpLitBand &band : m_bands) {
-    all.insert(all.end(), band.dark.begin(), band.dark.end());
-  }
-  if (all.empty()) {
-    return;
-  }
-  const auto middle = all.begin() + static_cast<long>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
-  m_background = *middle;
+  const auto dark = static_cast<float>(background());
   for (vpLitBand &band : m_bands) {
     for (size_t x = 0; x < band.light.size(); ++x) {
-      if (band.dark[x] - m_background > least + share * band.light[x]) {
+      if (band.dark[x] - dark > least + share * band.light[x]) {
         band.light[x] = 0;
       }
     }

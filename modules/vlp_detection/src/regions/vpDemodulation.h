@@ -36,7 +36,8 @@ public:
   const std::vector<vpLitBand> &bands() const { return m_bands; }
   double noise() const; // grey levels, standard deviation of a band's light
   double pixelNoise() const;
-  double background() const { return m_background; } // grey value beside the lamp
+  //! Median grey value of dark lines, where a lamp's region has no samples.
+  double background(const cv::Rect &lamp = {}) const;
   double brightest() const;
 
 private:
@@ -46,7 +47,6 @@ private:
   const cv::Mat_<unsigned char> &m_lines;
   cv::Rect m_window;
   std::vector<vpLitBand> m_bands;
-  float m_background = 0;
 };
 
 END_VISP_NAMESPACE

@@ -6,6 +6,7 @@
 
 #include <visp3/vlp_identification/vpLedDetector.h>
 
+#include <visp3/vlp_core/vpBrighter.h>
 #include <visp3/vlp_identification/vpLitShare.h>
 
 #include <algorithm>
@@ -33,19 +34,22 @@ cv::Rect boxOf(const vpLampOutline &outline, cv::Size picture)
   return cv::Rect(first, last + cv::Point(1, 1)) & cv::Rect(cv::Point(), picture);
 }
 
-//! Median grey value of the pixels to the left and right of the outline, \e gap beside it.
+//! Median grey value of stretches to the left and right of the outline, \e gap beside it: of means, which
+//! noise that black clips has others of than single pixels' median.
 double backgroundOf(const cv::Mat_<unsigned char> &lines, const vpLampOutline &outline, const cv::Rect &box,
                     double gap)
 {
-  std::vector<unsigned char> beside;
+  static const int stretch = 5; // samples
+  std::vector<double> beside;
   for (int line = box.y; line < box.br().y; ++line) {
     double first, last;
     if (!outline.stretch(line, first, last)) {
       continue;
     }
-    for (const double sample : {std::floor(first - gap), std::ceil(last + gap)}) {
-      if (sample >= 0 && sample < lines.cols) {
-        beside.push_back(lines(line, static_cast<int>(sample)));
+    for (const double from : {std::floor(first - gap) - stretch + 1, std::ceil(last + gap)}) {
+      if (from >= 0 && from + stretch <= lines.cols) {
+        const int sum = vpBrighter::sum(lines[line] + static_cast<int>(from), stretch);
+        beside.push_back(static_cast<double>(sum) / stretch);
       }
     }
   }

@@ -36,8 +36,11 @@ public:
   bool significant(double least);
   //! The likeliest sinusoids, the best first.
   const std::vector<vpStripeStarts::Sinusoid> &candidates();
-  //! Whether the edges of the stripes are those of one pulse a period.
-  bool edgesAgree() const { return m_pulses.has_value(); }
+  //! Whether the edges of the stripes are those of one pulse a period, or of two.
+  bool edgesAgree(bool twoPulse) const
+  {
+    return twoPulse ? vpStripeStarts::pairsOfPulses(m_edges).has_value() : m_pulses.has_value();
+  }
 
   std::optional<vpWaveformFit> onePulse();
   std::optional<vpWaveformFit> twoPulses();

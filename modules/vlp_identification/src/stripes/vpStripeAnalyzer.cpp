@@ -259,7 +259,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
       take(features, *two, true, middle);
     }
   }
-  widen(features, profile, start->edgesAgree());
+  widen(features, profile, start->edgesAgree(features.signal == vpStripeFeatures::Signal::twoPulse));
   static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
   if (!(features.misfit < beyondDoubt)) {
     const std::optional<vpWordSearch::Found> word =

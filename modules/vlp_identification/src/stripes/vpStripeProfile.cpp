@@ -9,6 +9,8 @@
 
 #include <visp3/vlp_core/vpBrighter.h>
 
+#include "vpBlackEnd.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -108,6 +110,35 @@ double subtractDarkest(std::vector<double> &light)
   return below;
 }
 
+/*!
+  Takes light and noise of the lines, which \e chords are, to what they were before the grey scale's dark end
+  clipped them. \param noise Of a pixel, grey levels, about. \return The same of the surroundings, grey
+  levels.
+*/
+double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
+              double noise, vpStripeProfile &profile)
+{
+  static const double rounding = 1, above = 2; // grey levels; deviations, from where means are as they seem
+  if (noise < rounding || chords.empty() ||
+      background + *std::min_element(profile.light.begin(), profile.light.end()) > above * noise) {
+    return background;
+  }
+  std::vector<vpBlackEnd::Line> shown;
+  for (size_t i = 0; i < chords.size(); ++i) {
+    const int samples = chords[i].last - chords[i].first + 1,
+              bright = vpBrighter::count(lines[chords[i].line] + chords[i].first, samples, 0);
+    shown.push_back({profile.light[i] + background, samples, samples - bright});
+  }
+  const vpBlackEnd end(shown, noise);
+  background = end.before(background).mean;
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const vpBlackEnd::Light light = end.before(shown[i].mean);
+    profile.light[i] = light.mean - background;
+    profile.sigma[i] = std::max(profile.sigma[i], light.sigma / std::sqrt(shown[i].samples));
+  }
+  return background;
+}
+
 } // namespace
 
 double vpStripeProfile::depth() const
@@ -154,15 +185,18 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();
   Agreement agreement;
-  for (const Chord &chord : chordsOf(soft ? middle : nearlyAll)) {
+  const double noise = std::max(fit.noise, 0.3);
+  const std::vector<Chord> chords = chordsOf(soft ? middle : nearlyAll);
+  for (const Chord &chord : chords) {
     const LineLight line(lines[chord.line], chord, fit.background);
     profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
     profile.light.push_back(line.whole);
-    profile.sigma.push_back(std::max(fit.noise, 0.3) / std::sqrt(line.samples));
-    agreement.add(line, fit.noise);
+    profile.sigma.push_back(noise / std::sqrt(line.samples));
+    agreement.add(line, noise);
   }
+  const double background = unclip(lines, chords, fit.background, noise, profile);
   static const double nearlyWhite = 250; // grey value of a line that may have had more light than it shows
-  profile.white = nearlyWhite - fit.background - subtractDarkest(profile.light);
+  profile.white = nearlyWhite - background - subtractDarkest(profile.light);
   profile.agreement = agreement.value();
   return profile;
 }
