@@ -139,8 +139,10 @@ size_t vpPoseHypothesis::mix(vpVlpFilter &mixed, size_t first, size_t end) const
     sum += m_modes[mode];
     likeliest = m_modes[mode] > m_modes[likeliest] ? mode : likeliest;
   }
-  std::vector<const vpVlpFilter *> parts;
-  std::vector<double> weights;
+  static thread_local std::vector<const vpVlpFilter *> parts; // kept, so that it takes no memory
+  static thread_local std::vector<double> weights;
+  parts.clear();
+  weights.clear();
   for (size_t mode = first; mode < end; ++mode) {
     if (mode == likeliest || m_modes[mode] > m_hypotheses.negligible * sum) {
       parts.push_back(&m_passes[mode].filter);
@@ -206,6 +208,7 @@ vpPoseHypothesis::Verdict vpPoseHypothesis::judge(const vpLamp &lamp, bool asLar
   const double stranger = trust.doubts(lamp) ? m_hypotheses.staying : m_hypotheses.stranger;
   const double other = std::log(stranger) + logUniform;
   Verdict verdict;
+  verdict.wasStranger = trust.doubts(lamp);
   verdict.logLikelihood = other;
   const Eigen::Vector2d offset = trust.offset(lamp);
   sight.covariance += offset * offset.transpose();

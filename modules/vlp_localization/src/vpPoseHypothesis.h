@@ -26,6 +26,7 @@ public:
   struct Verdict {
     vpVlpFilter::Innovation innovation;
     bool accepted = false;    // likelier the map's than not
+    bool wasStranger = false; // in the frame before
     double logLikelihood = 0; // of the ray, whatever it is
   };
 

@@ -30,12 +30,7 @@ void vpPoseMixture::restart(const vpPoseHypothesis &place)
 
 void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry)
 {
-  std::vector<std::vector<bool>> strangers; // before this frame
   for (vpPoseHypothesis &place : m_places) {
-    strangers.emplace_back();
-    for (const vpFrameLamp &lamp : frame.lamps) {
-      strangers.back().push_back(place.trust.doubts(*lamp.lamp));
-    }
     place.filter.takeOdometry(odometry);
     place.logWeight += place.follow(frame);
   }
@@ -45,10 +40,10 @@ void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry
     for (const vpPoseHypothesis &place : m_places) {
       most = std::max(most, place.verdicts[k].accepted ? place.verdicts[k].logLikelihood : -1e300);
     }
-    for (size_t p = 0; p < m_places.size(); ++p) {
-      const vpPoseHypothesis::Verdict &verdict = m_places[p].verdicts[k];
-      if (strangers[p][k] && !verdict.accepted) {
-        m_places[p].logWeight += std::max(0.0, most - verdict.logLikelihood);
+    for (vpPoseHypothesis &place : m_places) {
+      const vpPoseHypothesis::Verdict &verdict = place.verdicts[k];
+      if (verdict.wasStranger && !verdict.accepted) {
+        place.logWeight += std::max(0.0, most - verdict.logLikelihood);
       }
     }
   }
@@ -60,15 +55,20 @@ bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypothes
   if (frame.lamps.size() < fewest) {
     return false;
   }
-  // Two lamps may then be anywhere in the picture, and the others are where they should be.
+  // Two lamps may then be anywhere in the picture; two more tell its velocity, by the time between their
+  // lines; others are where they should be.
+  static const size_t moving = 4;
+  static const double height = 1; // m, of a lamp, about
+  const vpVlpFilter &filter = likeliest().filter;
+  const double unknown =
+      filter.startVelocity * (frame.lamps.back().time - frame.lamps.front().time) / height; // of a ray
   double most = std::log(hypotheses.relocation);
-  std::vector<double> densities;
-  for (const vpFrameLamp &lamp : frame.lamps) {
-    densities.push_back(lamp.logPeak);
-  }
-  std::sort(densities.begin(), densities.end());
-  for (size_t k = 0; k < densities.size(); ++k) {
-    most += k < fewest ? std::max(frame.logUniform, 0.0) + 2 : densities[k];
+  for (size_t k = 0; k < frame.lamps.size(); ++k) {
+    const Eigen::Matrix2d wide =
+        frame.lamps[k].sight.covariance + unknown * unknown * Eigen::Matrix2d::Identity();
+    most += k < fewest   ? std::max(frame.logUniform, 0.0) + 2
+            : k < moving ? -std::log(2 * M_PI) - 0.5 * std::log(wide.determinant())
+                         : frame.lamps[k].logPeak;
   }
   double now = -1e300;
   for (const vpPoseHypothesis &place : m_places) {

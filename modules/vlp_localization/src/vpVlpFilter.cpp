@@ -325,21 +325,21 @@ template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector
 
 void vpVlpFilter::mix(const std::vector<const vpVlpFilter *> &parts, const std::vector<double> &weights)
 {
-  const auto aside = [this](const vpVlpFilter &part) {
-    Vector apart = part.m_x - m_x;
+  static thread_local Vector mean, apart; // kept, so that it takes no memory
+  static thread_local Matrix spread;
+  mean.setZero(m_x.size());
+  spread.setZero(m_x.size(), m_x.size());
+  for (size_t k = 0; k < parts.size(); ++k) {
+    apart = parts[k]->m_x - m_x;
     for (const Index first : {x, mark0}) {
       apart(first + yaw) = std::remainder(apart(first + yaw), 2 * M_PI);
     }
-    return apart;
-  };
-  Vector mean = Vector::Zero(m_x.size());
-  Matrix spread = Matrix::Zero(m_x.size(), m_x.size());
-  for (size_t k = 0; k < parts.size(); ++k) {
-    const Vector apart = aside(*parts[k]);
     mean += weights[k] * apart;
-    spread += weights[k] * (parts[k]->m_P + apart * apart.transpose());
+    spread += weights[k] * parts[k]->m_P;
+    spread.noalias() += (weights[k] * apart).lazyProduct(apart.transpose());
   }
-  m_P = spread - mean * mean.transpose();
+  m_P = spread;
+  m_P.noalias() -= mean.lazyProduct(mean.transpose());
   m_x += mean;
 }
 

@@ -140,7 +140,16 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
     if (location.fix.degreesOfFreedom > 0) {
       m_places->addWider(wider, hypotheses, true);
     }
+    const vpVlpFix alone = location.fix;
     settle(location);
+    // One frame hardly tells a robot that moves from lamps that hang a little elsewhere.
+    if (!filter.hasOdometry()) {
+      const Eigen::Matrix<double, 6, 1> moved =
+          vpBasePose::of(alone.wMb).stepTo(vpBasePose::of(location.fix.wMb));
+      location.fix.wMb = alone.wMb;
+      location.fix.wMc = alone.wMc;
+      location.fix.covariance += moved * moved.transpose();
+    }
   }
 }
 
