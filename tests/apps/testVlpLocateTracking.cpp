@@ -169,7 +169,7 @@ TEST(VlpLocateTracking, StateGoesFromFixOverTrackingAndCoastingToNone)
     frames.emplace_back(0.05 * k, "lamps");
   }
   for (int k = 10; k < 16; ++k) { // a robot that stood so far may start at any time
-    frames.emplace_back(0.3 * (k - 9) + 0.45, "black");
+    frames.emplace_back(0.2 * (k - 9) + 0.45, "black");
   }
   frames.emplace_back(4, "black");
   frames.emplace_back(4.05, "lamps");

@@ -42,7 +42,7 @@ bool bends(const std::vector<vpPoseHypothesis::Verdict> &verdicts)
 vpPoseHypothesis::vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses,
                                    const vpLampTrust &trust)
     : filter(filter), trust(trust), m_hypotheses(hypotheses), m_modes(hypotheses),
-      m_passes(vpMotionModes::count, Pass{filter, {}, 0}), m_apart{filter, filter},
+      m_passes(vpMotionModes::count, Pass{filter, {}, 0}), m_apart{filter, filter}, m_there(filter),
       m_before(filter), m_apartBefore{filter, filter}, m_modesBefore(hypotheses)
 {
 }
@@ -61,7 +61,7 @@ void vpPoseHypothesis::begin(const vpLampFrame &frame)
   m_logLikelihood = weigh(frame, 0);
   learn(frame);
   borneOut = true;
-  allowed = -std::log(m_hypotheses.boast);
+  allowed = -0.5 * std::log(m_hypotheses.boast); // a start tells little of the claims as yet
 }
 
 double vpPoseHypothesis::follow(const vpLampFrame &frame)
@@ -156,13 +156,14 @@ size_t vpPoseHypothesis::mix(vpVlpFilter &mixed, size_t first, size_t end) const
 
 //! One mode's: rays are not linear in a long way to where they say, about that path, then.
 void vpPoseHypothesis::attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least,
-                               Pass &pass) const
+                               Pass &pass)
 {
   pass.filter = before;
   m_modes.apply(mode, pass.filter);
   correct(frame, least, pass);
   for (int round = 0; round < 2 && bends(pass.verdicts); ++round) {
-    vpVlpFilter there = before;
+    vpVlpFilter &there = m_there;
+    there = before;
     m_modes.apply(mode, there);
     if (!there.linearizeAbout(pass.filter)) {
       return;

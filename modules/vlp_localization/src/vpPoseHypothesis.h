@@ -75,7 +75,7 @@ private:
 
   void correct(const vpLampFrame &frame, double least, Pass &pass) const;
   void attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least,
-               Pass &pass) const;
+               Pass &pass);
   Verdict judge(const vpLamp &lamp, bool asLarge, vpLampSight &sight, const vpVlpFilter &filter,
                 double logUniform) const;
   double weigh(const vpLampFrame &frame, double dt);
@@ -90,6 +90,7 @@ private:
   std::array<vpVlpFilter, 2> m_apart; // the odometry is off; it is right
   bool m_parted = false;              // there was odometry in the latest frame
   std::vector<std::string> m_changes; // of each lamp of the latest frame; empty: as before
+  vpVlpFilter m_there;                // attempt(): takes no memory
   vpVlpFilter m_before;               // before the latest frame,
   std::array<vpVlpFilter, 2> m_apartBefore;
   vpMotionModes m_modesBefore;

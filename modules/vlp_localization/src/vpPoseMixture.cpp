@@ -127,9 +127,8 @@ bool vpPoseMixture::agree(const vpPoseHypothesis &place, const vpPoseHypothesis 
 
 void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
 {
-  std::stable_sort(
-      m_places.begin(), m_places.end(),
-      [](const vpPoseHypothesis &a, const vpPoseHypothesis &b) { return a.logWeight > b.logWeight; });
+  std::sort(m_places.begin(), m_places.end(),
+            [](const vpPoseHypothesis &a, const vpPoseHypothesis &b) { return a.logWeight > b.logWeight; });
   const double most = m_places.front().logWeight;
   const auto negligible = [&](const vpPoseHypothesis &place) {
     return place.logWeight < most + std::log(hypotheses.negligible) ||
@@ -161,7 +160,7 @@ void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
 
 bool vpPoseMixture::lost() const
 {
-  return likeliest().filter.state(likeliest().filter.marked()) == vpVlpFilter::State::lost;
+  return likeliest().filter.state(likeliest().filter.pose()) == vpVlpFilter::State::lost;
 }
 
 void vpPoseMixture::tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses,

@@ -336,10 +336,14 @@ void vpVlpFilter::mix(const std::vector<const vpVlpFilter *> &parts, const std::
     }
     mean += weights[k] * apart;
     spread += weights[k] * parts[k]->m_P;
-    spread.noalias() += (weights[k] * apart).lazyProduct(apart.transpose());
+    for (Eigen::Index column = 0; column < spread.cols(); ++column) {
+      spread.col(column) += weights[k] * apart(column) * apart;
+    }
   }
   m_P = spread;
-  m_P.noalias() -= mean.lazyProduct(mean.transpose());
+  for (Eigen::Index column = 0; column < m_P.cols(); ++column) {
+    m_P.col(column) -= mean(column) * mean;
+  }
   m_x += mean;
 }
 

@@ -74,6 +74,9 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
     m_P(i, i) = square(i == w ? startTurnRate : startVelocity);
   }
   m_aside = false;
+  m_offset.setZero(n);
+  m_PH.resize(n, 3);
+  m_K.resize(n, 3);
   m_common.setZero();
   m_startX = m_x;
   m_startP = m_P;

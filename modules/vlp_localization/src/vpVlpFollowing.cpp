@@ -165,7 +165,7 @@ void vpVlpLocalizer::settle(vpVlpLocation &location)
 void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
   std::vector<vpLampObservation> &apart = m_scratch->apart;
-  vpVlpFix alone;
+  vpVlpFix &alone = m_scratch->alone;
   const auto aloneIsGood = [&] {
     apart = location.observations;
     alone = solve(apart, usable);

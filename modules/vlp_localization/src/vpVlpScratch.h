@@ -41,7 +41,8 @@ struct vpVlpLocalizer::Scratch {
   std::unordered_map<std::string, size_t> lampOf; // index into the map, by id
   vpVlpFilter there;                              // a filter that goes on to some other time
   vpLampFrame frame;
-  std::vector<vpLampObservation> apart; // a frame's, as seen by itself
+  std::vector<vpLampObservation> apart; // a frame's, as seen by itself,
+  vpVlpFix alone;                       // and its pose
   std::vector<size_t> usable;
   std::vector<vpRect> windows;
 };
