@@ -113,8 +113,7 @@ Use useOf(const vpSpeedCase &what, bool tracking, int frames)
   for (int k = 0; k < warmUp; ++k) {
     localizer.process(all[static_cast<size_t>(k)], location);
   }
-  // Of the median frame: one in which the estimator asks whether camera and map are as exact as they say
-  // takes some.
+  // Of the median frame: those in which the estimator compares rig and map with less exact ones take some.
   std::vector<size_t> allocations;
   allocations.reserve(static_cast<size_t>(frames));
   for (int k = warmUp; k < warmUp + frames; ++k) {

@@ -70,6 +70,26 @@ TEST(ServoSafety, NothingMovesBeforeTheFirstConfirmedFix)
   EXPECT_EQ(safety.permit(0.4, fixAt(0, 0, 0)).share, 1);
 }
 
+TEST(ServoSafety, StandsWhereLampsShowAnotherPlaceThanTheMotion)
+{
+  for (const bool ambiguous : {false, true}) {
+    vpServoSafety safety = driving();
+    vpVlpLocation elsewhere = tracked();
+    elsewhere.relocated = !ambiguous;
+    elsewhere.fix.ambiguous = ambiguous;
+    safety.addPicture(0.1, elsewhere);
+    const vpServoPermit permit = safety.permit(0.1, fixAt(0, 0, 0));
+    EXPECT_EQ(permit.share, 0);
+    EXPECT_NE(permit.reason.find("another place"), std::string::npos) << permit.reason;
+    const int confirmations = vpServoSafetySettings().confirmations;
+    for (int i = 0; i < confirmations; ++i) {
+      EXPECT_EQ(safety.permit(0.2, fixAt(0, 0, 0)).share, 0) << i;
+      safety.addPicture(0.2, tracked());
+    }
+    EXPECT_EQ(safety.permit(0.2, fixAt(0, 0, 0)).share, 1);
+  }
+}
+
 TEST(ServoSafety, SlowsAndStandsAsThePoseGetsUncertain)
 {
   const vpServoSafetySettings settings;

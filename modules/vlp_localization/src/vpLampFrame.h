@@ -14,6 +14,8 @@
 
 BEGIN_VISP_NAMESPACE
 
+const size_t poseLamps = 2; // that a pose needs
+
 //! A lamp of the map in a frame.
 struct vpFrameLamp {
   size_t observation; // index of it

@@ -11,6 +11,8 @@
 #include <Eigen/LU>
 #include <visp3/core/vpMeterPixelConversion.h>
 
+#include "vpLampGeometry.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -137,12 +139,9 @@ std::string vpLampTrust::changed(const vpLamp &lamp, const vpLampObservation &se
 
 bool vpLampTrust::looksAsBefore(const vpLampFrame &frame, const vpHomogeneousMatrix &wMb) const
 {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  for (unsigned int row = 0; row < 3; ++row) {
-    for (unsigned int column = 0; column < 4; ++column) {
-      pose(row, column) = wMb[row][column];
-    }
-  }
+  const vpBasePose base = vpBasePose::of(wMb);
+  Eigen::Isometry3d pose(base.wRb);
+  pose.translation() = base.wtb;
   vpLampTrust asked = *this;         // which counts how often it is asked
   static const double moving = 0.01; // stretch of a lamp by an unknown velocity, standard deviation
   return std::all_of(frame.lamps.begin(), frame.lamps.end(), [&](const vpFrameLamp &lamp) {

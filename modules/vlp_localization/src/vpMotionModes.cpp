@@ -12,11 +12,12 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! One of several kinds, the first of which is left at the rate \e unrest and come back to at \e rest, 1/s.
+//! One of several kinds, the first of which is left at the rate \e change and come back to at \e settling,
+//! 1/s.
 template <size_t Kinds>
-void wander(std::array<double, Kinds> &probability, double dt, double unrest, double rest)
+void wander(std::array<double, Kinds> &probability, double dt, double change, double settling)
 {
-  const double leave = 1 - std::exp(-unrest * dt), settle = 1 - std::exp(-rest * dt);
+  const double leave = 1 - std::exp(-change * dt), settle = 1 - std::exp(-settling * dt);
   std::array<double, Kinds> after{};
   for (size_t from = 0; from < Kinds; ++from) {
     const double back = from == 0 ? 0 : settle, away = (1 - back) * leave;
@@ -28,19 +29,13 @@ void wander(std::array<double, Kinds> &probability, double dt, double unrest, do
   }
   probability = after;
 }
-
-template <size_t Kinds>
-void start(std::array<double, Kinds> &probability)
-{
-  probability.fill(1. / Kinds);
-}
 } // namespace
 
 vpMotionModes::vpMotionModes(const vpVlpHypotheses &hypotheses)
     : m_hypotheses(hypotheses), m_right(hypotheses.right)
 {
-  start(m_without);
-  start(m_by);
+  m_without.fill(1. / alone);
+  m_by.fill(1. / (count - alone));
   predict(0, false);
 }
 
@@ -58,8 +53,8 @@ void vpMotionModes::apply(size_t mode, vpVlpFilter &filter) const
 void vpMotionModes::predict(double dt, bool odometry)
 {
   const vpVlpHypotheses &of = m_hypotheses;
-  wander(m_without, dt, of.unrest, of.rest);
-  wander(m_by, dt, of.unrest, of.rest);
+  wander(m_without, dt, of.change, of.settling);
+  wander(m_by, dt, of.change, of.settling);
   const double slipped = m_right * (1 - std::exp(-of.slip * dt)),
                gripped = (1 - m_right) * (1 - std::exp(-of.grip * dt));
   m_right += gripped - slipped;
@@ -94,9 +89,6 @@ double vpMotionModes::correct(const std::array<double, count> &logLikelihood)
     }
     return all / sum;
   };
-  for (double &probability : m_probability) {
-    probability = std::max(probability, 0.0);
-  }
   share(m_without, 0);
   if (m_odometry) {
     m_right = share(m_by, alone);

@@ -36,7 +36,7 @@ public:
   size_t possible() const { return m_odometry ? count : alone; }
   //! Probability that the odometry, where there is any, does not tell the velocity.
   double odometryIsOff() const { return m_odometry ? 1 - m_right : 1; }
-  //! How much the frames since the start have told of the motion, nats: what it was less probable to be.
+  //! What the frames since the start have told of the motion, nats (Kullback and Leibler 1951).
   double information() const { return m_information; }
   double operator[](size_t mode) const { return m_probability[mode]; }
   //! By how likely each mode makes the frame. \return Log likelihood of the frame.

@@ -61,7 +61,7 @@ void vpPoseHypothesis::begin(const vpLampFrame &frame)
   m_logLikelihood = weigh(frame, 0);
   learn(frame);
   borneOut = true;
-  allowed = -0.5 * std::log(m_hypotheses.boast); // a start tells little of the claims as yet
+  asked = -std::log(m_hypotheses.claimsOff);
 }
 
 double vpPoseHypothesis::follow(const vpLampFrame &frame)
@@ -75,6 +75,7 @@ double vpPoseHypothesis::follow(const vpLampFrame &frame)
   m_time = frame.timestamp;
   learn(frame);
   ++frames;
+  borneOut = borneOut || accepted() > poseLamps;
   return m_logLikelihood;
 }
 

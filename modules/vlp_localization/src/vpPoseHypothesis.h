@@ -33,7 +33,7 @@ public:
   //! \param filter Its settings and odometry.
   vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses, const vpLampTrust &trust);
 
-  //! Begins at a pose, with a frame. \param filter Started there.
+  //! Begins with a frame, at the pose at which the filter was started.
   void begin(const vpLampFrame &frame);
   //! Goes on to a frame. \return Log likelihood of the frame.
   double follow(const vpLampFrame &frame);
@@ -55,14 +55,14 @@ public:
   void mark(const vpLampFrame &frame, std::vector<vpLampObservation> &observations) const;
   size_t accepted() const;
   double logLikelihood() const { return m_logLikelihood; } // of the latest frame
-  //! How much less probable the robot's motion is than any, nats.
-  double improbability() const { return m_modes.information(); }
+  //! What the frames since the start have told of the motion, nats.
+  double information() const { return m_modes.information(); }
 
   vpVlpFilter filter;
   vpLampTrust trust;
   double logWeight = 0;
   int frames = 0;       // followed
-  double allowed = 0;   // improbability() up to which camera and map are not questioned
+  double asked = 0;     // information() at which it is compared with wider claims next
   bool borneOut = true; // else it was put there, which no lamp more than a pose needs has shown since
   std::vector<Verdict> verdicts; // on the lamps of the latest frame
 
@@ -74,8 +74,7 @@ private:
   };
 
   void correct(const vpLampFrame &frame, double least, Pass &pass) const;
-  void attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least,
-               Pass &pass);
+  void attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least, Pass &pass);
   Verdict judge(const vpLamp &lamp, bool asLarge, vpLampSight &sight, const vpVlpFilter &filter,
                 double logUniform) const;
   double weigh(const vpLampFrame &frame, double dt);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include <Eigen/LU>
@@ -49,26 +48,25 @@ void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry
   }
 }
 
-bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const
+bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses,
+                                   double since) const
 {
-  static const size_t fewest = 2; // lamps that tell a pose
-  if (frame.lamps.size() < fewest) {
+  if (frame.lamps.size() < poseLamps) {
     return false;
   }
-  // Two lamps may then be anywhere in the picture; two more tell its velocity, by the time between their
-  // lines; others are where they should be.
+  // At best the step is the likeliest one, which two lamps show: under lamps about 1 m above and apart rays
+  // change as coordinates do. Two more tell the velocity, by the time between their lines; others are where
+  // they should be.
   static const size_t moving = 4;
-  static const double height = 1; // m, of a lamp, about
   const vpVlpFilter &filter = likeliest().filter;
   const double unknown =
-      filter.startVelocity * (frame.lamps.back().time - frame.lamps.front().time) / height; // of a ray
-  double most = std::log(hypotheses.relocation);
-  for (size_t k = 0; k < frame.lamps.size(); ++k) {
+      filter.startVelocity * (frame.lamps.back().time - frame.lamps.front().time); // of a ray
+  double most = std::log(hypotheses.relocation * since / (2 * M_PI * hypotheses.reach * hypotheses.reach) /
+                         (M_PI * hypotheses.turn) / (M_PI * hypotheses.floorStep));
+  for (size_t k = poseLamps; k < frame.lamps.size(); ++k) {
     const Eigen::Matrix2d wide =
         frame.lamps[k].sight.covariance + unknown * unknown * Eigen::Matrix2d::Identity();
-    most += k < fewest   ? std::max(frame.logUniform, 0.0) + 2
-            : k < moving ? -std::log(2 * M_PI) - 0.5 * std::log(wide.determinant())
-                         : frame.lamps[k].logPeak;
+    most += k < moving ? -std::log(2 * M_PI) - 0.5 * std::log(wide.determinant()) : frame.lamps[k].logPeak;
   }
   double now = -1e300;
   for (const vpPoseHypothesis &place : m_places) {
@@ -79,18 +77,17 @@ bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypothes
 
 bool vpPoseMixture::mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses)
 {
-  static const size_t fewest = 3; // lamps, of which two tell any pose
   vpPoseHypothesis &place = m_places.front();
-  if (frame.lamps.size() < fewest || m_places.size() > 1 || place.improbability() < place.allowed) {
+  if (frame.lamps.size() <= poseLamps || m_places.size() > 1 || place.information() < place.asked) {
     return false;
   }
-  place.allowed = place.improbability() - std::log(hypotheses.boast);
+  place.asked = place.information() - std::log(hypotheses.claimsOff);
   return true;
 }
 
 void vpPoseMixture::addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypotheses, bool isFirst)
 {
-  place.logWeight = likeliest().logWeight + std::log(hypotheses.boast) +
+  place.logWeight = likeliest().logWeight + std::log(hypotheses.claimsOff) +
                     (isFirst ? place.logLikelihood() - likeliest().logLikelihood() : 0);
   m_places.push_back(std::move(place));
 }
@@ -98,18 +95,15 @@ void vpPoseMixture::addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypo
 void vpPoseMixture::addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place,
                                  const vpVlpHypotheses &hypotheses, double since)
 {
-  static const size_t fewest = 2; // lamps that a pose needs
-  const vpPoseHypothesis &here = likeliest();
-  const vpPoseHypothesis::Begun begun = place.begun(here);
-  place.borneOut = place.accepted() > fewest;
-  place.logWeight = std::log(hypotheses.relocation * since * here.odometryIsOff()) + begun.put;
-  std::vector<vpPoseHypothesis> more;
+  const vpPoseHypothesis::Begun begun = place.begun(likeliest());
+  place.borneOut = place.accepted() > poseLamps;
+  place.logWeight = std::log(hypotheses.relocation * since * likeliest().odometryIsOff()) + begun.put;
   if (!place.borneOut) { // or the lamps have given way to others
-    more.push_back(here.coasted(frame));
-    more.back().logWeight = std::log(hypotheses.copy * since) + begun.copied;
+    vpPoseHypothesis here = likeliest().coasted(frame);
+    here.logWeight = std::log(hypotheses.copy * since) + begun.copied;
+    m_places.push_back(std::move(here));
   }
-  more.push_back(std::move(place));
-  std::move(more.begin(), more.end(), std::back_inserter(m_places));
+  m_places.push_back(std::move(place));
 }
 
 //! Whether two places are one: pose and velocity of the other are within what the first is uncertain by.
@@ -135,7 +129,7 @@ void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
            (&place != &m_places.front() &&
             place.filter.state(place.filter.pose()) == vpVlpFilter::State::lost);
   };
-  static const size_t many = 4;
+  static const size_t many = 4; // places, each of which takes as long as one
   size_t kept = 1;
   while (kept < std::min(many, m_places.size()) && !negligible(m_places[kept])) {
     ++kept;
@@ -170,20 +164,23 @@ void vpPoseMixture::tell(const vpLampFrame &frame, const vpVlpHypotheses &hypoth
   vpVlpFix &fix = location.fix;
   likeliest().tell(frame, fix);
   location.relocated = !likeliest().borneOut;
+  if (m_places.size() == 1) {
+    return;
+  }
   const vpBasePose pose = vpBasePose::of(fix.wMb);
-  double elsewhere = 0;
+  fix.covariance *= std::exp(likeliest().logWeight);
+  double elsewhere = 0; // probability
   for (size_t p = 1; p < m_places.size(); ++p) {
     const vpPoseHypothesis &place = m_places[p];
     const double weight = std::exp(place.logWeight);
-    const vpVlpFix there = place.filter.marked();
-    const Eigen::Matrix<double, 6, 1> apart = pose.stepTo(vpBasePose::of(there.wMb));
-    fix.covariance += weight * apart * apart.transpose();
+    const vpVlpFilter::Pose there = place.filter.markedPose();
+    const vpBasePose base{there.wMb.linear(), there.wMb.translation()};
+    const Eigen::Matrix<double, 6, 1> apart = pose.stepTo(base);
+    fix.covariance += weight * (there.covariance + apart * apart.transpose());
     if (apart.head<2>().norm() > place.filter.trackingSigma ||
         std::abs(apart(5)) > place.filter.trackingYaw) {
+      fix.other = elsewhere > 0 ? fix.other : base.wMb();
       elsewhere += weight;
-      if (elsewhere == weight) {
-        fix.other = there.wMb;
-      }
     }
   }
   fix.ambiguous = elsewhere > 1 - hypotheses.decided;

@@ -30,8 +30,8 @@ public:
   void follow(const vpLampFrame &frame, const vpVlpFilter &odometry);
   //! Whether the frame is so unlikely from all of them that a robot that was put elsewhere may explain it
   //! better.
-  bool mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const;
-  //! Whether the robot's motion has become so improbable that camera and map may be off instead.
+  bool mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, double since) const;
+  //! Whether so much was told of the motion that camera and map may be off instead.
   bool mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses);
   //! Camera and map are less exact than they say: the latest frame under such claims. \param isFirst It is
   //! the first frame of the likeliest place as well.

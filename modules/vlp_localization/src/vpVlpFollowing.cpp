@@ -177,7 +177,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   }
   const double since = location.timestamp - filter.time();
   m_places->follow(frameOf(location.observations, usable, location.timestamp), filter);
-  const bool elsewhere = m_places->mayBeElsewhere(m_scratch->frame, hypotheses),
+  const bool elsewhere = m_places->mayBeElsewhere(m_scratch->frame, hypotheses, since),
              off = m_places->mayBeOff(m_scratch->frame, hypotheses);
   if ((elsewhere || off) && aloneIsGood()) {
     if (elsewhere) {

@@ -76,6 +76,7 @@ void vpServoSafety::addPicture(double known, const vpVlpLocation &location)
                     placeSigma(location.fix) < m_settings.sigmaSlow &&
                     yawSigma(location.fix) < m_settings.yawSlow;
   m_confirmed = good ? m_confirmed + 1 : 0;
+  m_relocated = location.relocated || location.fix.ambiguous;
 }
 
 void vpServoSafety::fail(const std::string &reason)
@@ -104,6 +105,9 @@ std::string vpServoSafety::unsafe(double now, const vpVlpFix &fix) const
   if (yawSigma(fix) > m_settings.yawStop) {
     return "the yaw is uncertain by " + vpNumberText(std::round(1000 * yawSigma(fix)) / 1000) +
            " rad, at most " + vpNumberText(m_settings.yawStop) + " are allowed";
+  }
+  if (m_relocated) {
+    return "the lamps show another place than the base's motion leads to, and no third lamp bears it out";
   }
   if (m_needsPictures && !m_lastPicture) {
     return "no picture yet";

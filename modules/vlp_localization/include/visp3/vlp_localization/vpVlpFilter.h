@@ -149,8 +149,6 @@ public:
   void rouse() { m_unrest = 1; }
   //! Its velocity is constant but for that share of the random accelerations.
   void calm(double share) { m_unrest = share; }
-  //! That share.
-  double unrest() const { return m_unrest; }
 
   /*!
     Mean and covariance of a mixture. \param parts Copies of one filter that went on under different
@@ -199,6 +197,8 @@ public:
   };
   //! The pose at time(), once started.
   Pose pose() const { return poseOf(x); }
+  //! That at the mark.
+  Pose markedPose() const { return poseOf(mark0); }
   vpVlpFix now() const { return fixOf(x); }
   //! The pose at any time: as predicted from time(), along the odometry as far as it is known, and by a robot
   //! that may start and stop from there on.

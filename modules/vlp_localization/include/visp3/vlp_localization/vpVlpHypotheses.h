@@ -19,8 +19,8 @@ struct VISP_EXPORT vpVlpHypotheses {
   double gentle = 0.02;
   double lively = 0.2;
   double onWheels = 0.03; // beyond the latest sample of an odometry that is followed
-  double unrest = 0.5;    // 1/s, at which it leaves one kind of motion for any of the others
-  double rest = 3;        // 1/s, at which it comes back to the steady one
+  double change = 0.5;    // 1/s, at which it leaves one kind of motion for any of the others
+  double settling = 3;    // 1/s, at which it comes back to the steady one
 
   // Whether the odometry tells its velocity.
   double right = 0.95;  // where it begins
@@ -36,12 +36,12 @@ struct VISP_EXPORT vpVlpHypotheses {
   // What is seen with a lamp's id.
   double displaced = 0.001; // the lamp, off by what vpVlpLocalizer::mapTolerance says
   double stranger = 0.001;  // another light, anywhere in the picture
-  double staying = 0.99;    // what it was in the frame before
-  double copy = 0.005;  // 1/s, at which two lamps give way to two others as far apart, such as their mirror
-  double copyReach = 1; // images; m, how far these are: bivariate Cauchy distribution, in any direction
+  double staying = 0.99;    // another light still, where it was in the frame before
+  double copy = 0.005;  // 1/s, at which two lamps give way to two others as far apart: a mirror shows such
+  double copyReach = 1; // m, of the way between them in x and y: bivariate Cauchy distribution
 
   // Whether rig and map are as exact as they say.
-  double boast = 0.01; // they are off by vpVlpFilter's claimedTilt and claimedPlace more
+  double claimsOff = 0.01; // they are off by vpVlpFilter's claimedTilt and claimedPlace more
 
   double negligible = 1e-3; // a hypothesis less probable than this is dropped
   double decided = 0.99;    // else the pose is ambiguous, where the other one is elsewhere

@@ -89,6 +89,7 @@ private:
   vpBaseLimits m_limits;
   bool m_needsPictures;
   vpBaseVelocity m_command;                         // the last one
+  bool m_relocated = false;                         // the latest picture's place is not borne out
   int m_confirmed = 0;                              // pictures in a row
   bool m_moving = false;                            // permitted to
   std::optional<double> m_lastPicture, m_waitBegan; // s
