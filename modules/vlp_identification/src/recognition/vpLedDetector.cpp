@@ -11,6 +11,7 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpRect.h>
+#include <visp3/vlp_detection/vpBlinkingLight.h>
 #include <visp3/vlp_identification/vpLedIdEvidence.h>
 #include <visp3/vlp_identification/vpLitShare.h>
 
@@ -221,16 +222,10 @@ bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> 
   }
   shareExposure(picture, regions);
   complete(picture, regions);
-  recognise(regions);
   for (Region &region : regions) {
-    vpLampObservation &lamp = region.lamp;
-    if (lamp.outline.shape == vpLampOutline::Shape::region && !lamp.candidates.empty()) {
-      lamp.id.clear();
-      lamp.candidates.clear();
-      lamp.confidence = 1; // as that of all without a candidate
-      lamp.remark = "blinks as a lamp of the map, but has no outline of one";
-    }
+    region.lamp.blinking = blinkingShare(picture, region);
   }
+  recognise(regions);
   std::stable_sort(regions.begin(), regions.end(), [](const Region &a, const Region &b) {
     return a.lamp.features.area > b.lamp.features.area;
   });
@@ -244,6 +239,20 @@ bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> 
   }
   m_nb_objects = m_observations.size();
   return m_nb_objects > 0;
+}
+
+//! Of the light inside a region's outline, the share that blinks as was read of it.
+double vpLedDetector::blinkingShare(const vpLinePicture &picture, const Region &region) const
+{
+  if (region.fit.outline.shape == vpLampOutline::Shape::region) {
+    return 0;
+  }
+  const Eigen::Vector4d box = region.fit.outline.box();
+  const cv::Rect inside(cv::Point(cvFloor(box(0)), cvFloor(box(1))),
+                        cv::Point(cvCeil(box(2)) + 1, cvCeil(box(3)) + 1)),
+      seen = inside & cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
+  const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
+  return lit.empty() || seen.empty() ? 1 : vpBlinkingLight::share(picture.grey, lit, seen);
 }
 
 void vpLedDetector::recognise(std::vector<Region> &regions)

@@ -93,8 +93,7 @@ void dropReflections(std::vector<vpLampObservation> &lamps)
   for (size_t i = 0; i < lamps.size(); ++i) {
     const bool reflected =
         !lamps[i].id.empty() && std::any_of(lamps.begin(), lamps.end(), [&](const vpLampObservation &other) {
-          return other.id == lamps[i].id && other.outline.shape != vpLampOutline::Shape::region &&
-                 other.features.area > much * lamps[i].features.area;
+          return other.id == lamps[i].id && other.features.area > much * lamps[i].features.area;
         });
     if (reflected) {
       reflections.push_back(i);
@@ -376,6 +375,11 @@ void vpLedIdRecognizer::decide(vpLampObservation &lamp, const Sight &sight) cons
   lamp.remark = unreadable(lamp.features, maxFrequencyDoubt, maxSpread);
   lamp.confidence = 1; // of being none of them
   if (!sight.readable) {
+    return;
+  }
+  if (!sight.candidates.empty() && lamp.blinking < leastBlinking) {
+    lamp.remark = lamp.blinking > 0 ? "only a part of it blinks as a lamp of the map"
+                                    : "blinks as a lamp of the map, but has no outline of one";
     return;
   }
   for (const Candidate &candidate : sight.candidates) {

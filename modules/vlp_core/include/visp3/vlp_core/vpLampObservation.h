@@ -121,6 +121,8 @@ struct VISP_EXPORT vpLampObservation {
   double blur = 0;      // px, standard deviation of the spread of its edge; 0: it has none
   double noise = 0;     // grey levels, of pixels about its edge, standard deviation
   double saturated = 0; // share of its lit pixels at the end of the grey scale
+  double blinking =
+      1; // share of the light inside its outline that blinks as its features say; 0: it has none
   vpStripeFeatures features;
   std::vector<vpLedIdCandidate> candidates; // the likeliest first
   std::string id;                           // of the map's lamp; empty: none of them, or more than one

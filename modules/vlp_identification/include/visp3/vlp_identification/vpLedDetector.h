@@ -103,6 +103,7 @@ private:
                                  const vpLedRoi &roi) const;
   void shareExposure(const vpLinePicture &picture, std::vector<Region> &regions);
   void recognise(std::vector<Region> &regions);
+  double blinkingShare(const vpLinePicture &picture, const Region &region) const;
   void joinPieces(const vpLinePicture &picture, std::vector<Region> &regions);
   void takeApart(const vpLinePicture &picture, std::vector<Region> &regions);
   bool readAround(const vpLinePicture &picture, Region &region) const;

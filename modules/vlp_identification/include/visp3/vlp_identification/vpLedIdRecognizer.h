@@ -45,6 +45,9 @@ struct VISP_EXPORT vpRowTimeError {
   Of a lamp whose shape the map states by its size, the outline has that shape: a window that crossbars divide
   evenly has the stripes of a lamp, and is no disc.
 
+  A lamp has an outline, and its stripes explain nearly all the light inside. Where two overlap, or what was
+  read is a neighbour's, they do not (`leastBlinking`).
+
   One that has at least `minConfidence` and a single lamp gives the id. What several lamps of one identifier
   leave open, or several candidates, is for geometry to decide: `candidates` hands them on.
 */
@@ -56,6 +59,7 @@ public:
   double spreadGate = 1.2;         // standard deviations, on what an unstated duty leaves open of it
   double shapeGate = 4;            // standard deviations, on duty and phase difference
   double leastShape = 1e-3;        // probability of its shape below which a whole outline is another lamp's
+  double leastBlinking = 2. / 3;   // of the light in an outline, that its lamp's stripes have to explain
   double minConfidence = 0.99;     // probability below which no id is given
   double maxFrequencyDoubt = 0.03; // share of the frequency: less certain stripes are recognised as nothing
   double maxSpread = 4;            // frequencySigma over frequencyBound, above which there is no id
