@@ -293,6 +293,7 @@ private:
   std::vector<std::string> m_lamps;                   // ids whose errors are states, in their order
   std::vector<double> m_placeSigmas;                  // m, of each at the start
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
+  std::vector<vpOdometry> m_startOdometry;            // m_odometry at the start
   std::vector<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
   double m_tiltDoubt = 0;             // rad, added to what the rig says of roll and pitch
   double m_placeDoubt = 0;            // m, added to what the map says of its lamps
