@@ -109,8 +109,8 @@ public:
   //! The same with the lamps that the state has, their errors as uncertain as at first: takes no memory.
   void restart(const vpHomogeneousMatrix &wMb, double time);
   //! The same start once more, linearised, up to conclude(), about what the lamps since then have shown:
-  //! their marked() pose and velocity. The lamps are to follow again.
-  void startAgain();
+  //! their marked() pose and velocity. The lamps are to follow again, and so is the odometry \e odometryToo.
+  void startAgain(bool odometryToo = false);
   void stop() { m_started = false; }
   bool started() const { return m_started; } // else time, lamps and marks change nothing
 
