@@ -113,6 +113,7 @@ void drawLegend(cv::Mat &panel, int top, double unit)
        {{vpVlpColours::ofState("fix"), "fix"},
         {vpVlpColours::ofState("tracking"), "tracking"},
         {vpVlpColours::ofState("coasting"), "coasting"},
+        {vpVlpColours::ofState("relocated"), "relocated"},
         {vpVlpColours::ofState("ambiguous"), "ambiguous"},
         {vpVlpColours::white, "3 sigma"}}}};
   const int row = legendRow(unit), radius = cvRound(3.5 * unit), gap = cvRound(5 * unit);

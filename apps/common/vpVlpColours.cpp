@@ -22,6 +22,9 @@ cv::Scalar vpVlpColours::ofState(const std::string &state)
   if (state == "coasting") {
     return {40, 130, 255};
   }
+  if (state == "relocated") {
+    return violet;
+  }
   return state == "ambiguous" ? yellow : grey;
 }
 
@@ -32,6 +35,9 @@ std::string vpStateOf(const vpVlpLocation &location)
   }
   if (location.fix.ambiguous) {
     return "ambiguous";
+  }
+  if (location.relocated) {
+    return "relocated";
   }
   if (!location.tracked) {
     return "fix";

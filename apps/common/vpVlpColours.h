@@ -29,7 +29,7 @@ cv::Scalar ofLamp(const vpLampObservation &lamp);
 cv::Scalar ofState(const std::string &state);
 } // namespace vpVlpColours
 
-//! `tracking`, `coasting`, `fix`, `ambiguous` or `none`.
+//! `tracking`, `coasting`, `fix`, `relocated`, `ambiguous` or `none`.
 std::string vpStateOf(const vpVlpLocation &location);
 
 END_VISP_NAMESPACE

@@ -118,9 +118,10 @@ void drawStatus(cv::Mat &picture, const vpVlpLocation &location, double compute,
                   "", ""});
 
   const std::string state = vpStateOf(location);
-  const std::string heading = !fix.valid      ? "no position"
-                              : fix.ambiguous ? "ambiguous: a second pose fits as well"
-                                              : state;
+  const std::string heading = !fix.valid           ? "no position"
+                              : fix.ambiguous      ? "ambiguous: a second pose fits as well"
+                              : location.relocated ? "relocated: not borne out yet"
+                                                   : state;
   const int left = cvRound(10 * unit);
   int base = cvRound(24 * unit);
   const cv::Scalar colour = fix.valid ? vpVlpColours::ofState(state) : vpVlpColours::yellow;

@@ -32,7 +32,7 @@ Examples:
 
 Inputs:
   truth, estimate  TUM: timestamp tx ty tz qx qy qz qw (s, m), times increasing, # begins a comment
-  fixes            as vlp-locate --fixes writes them; only rows whose state is fix count as a position
+  fixes            as vlp-locate --fixes writes them; rows whose state is none or ambiguous are no position
   runs             log folders of vlp-servo: how far each was off its path, truly where it is simulated, and
                    as it believed; runs along the same path are drawn in one map
 Each pose is held against the truth interpolated to its time, never beyond the truth's ends.

@@ -63,6 +63,10 @@ public:
         m_summary.addBad();
         continue;
       }
+      if (located.location.fix.valid && located.location.relocated != m_relocated) {
+        progress.clear();
+        tellRelocation(located.location);
+      }
       m_summary.add(located);
       m_outputs.write(located, m_localizer.tracker.detector);
       progress.show(located.index + 1);
@@ -105,6 +109,22 @@ private:
       throw vpException(error.getCode(), frame.name + ": " + error.getStringMessage());
     }
     located.compute = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  //! Where it begins and where it ends.
+  void tellRelocation(const vpVlpLocation &location)
+  {
+    m_relocated = location.relocated;
+    const vpVlpFix &fix = location.fix;
+    const std::string place =
+        vpFormat("%.3f s: x %.3f, y %.3f m", location.timestamp, fix.wMb[0][3], fix.wMb[1][3]);
+    if (m_relocated) {
+      spdlog::warn("{}: relocated: no motion leads there, and no third lamp bears it out yet", place);
+    } else if (constexpr size_t enough = 3; fix.lamps.size() >= enough) {
+      spdlog::info("{}: borne out by {} lamps", place, fix.lamps.size());
+    } else {
+      spdlog::info("{}: no longer relocated", place);
+    }
   }
 
   //! Hands on what the base says up to when a frame's last line was read: by then it is known.
@@ -208,6 +228,7 @@ private:
   double m_lastTime = -std::numeric_limits<double>::infinity(); // s, of the last frame
   std::unique_ptr<vpFrameSource> m_source;
   vpLocateSummary m_summary;
+  bool m_relocated = false; // told
   bool m_finished = false;
   vpExitCode m_code = vpExitCode::badInput; // once finished
   vpLocateOutputs m_outputs;                // last: its window speaks to all of the above

@@ -39,8 +39,9 @@ Outputs (m, rad, s, Hz, pixels; the pose is wMb, the robot base in the map):
            a row for each frame read. Angles about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).
            lamps: their ids, joined by ';'. state: tracking (the pose is carried from frame to frame, its
            sigma below 20 mm and 0.05 rad); coasting (less certain, sigma below 200 mm: few lamps or none);
-           fix (of this frame alone); ambiguous (a second pose explains the frame as well, this one is the
-           likelier); none (no position, the fields of the pose are empty).
+           fix (of this frame alone); relocated (where no motion leads to: the robot was put there, or two
+           lamps gave way to copies; until a third lamp bears it out); ambiguous (a second pose explains the
+           frame as well, this one is the likelier); none (no position, the fields of the pose are empty).
   seen     timestamp_s,file,lamp_id,u,v,diameter_px,frequency_hz,duty,confidence,accepted,symbols:
            a row for each lamp-like region. u, v: the image of the lamp's middle. lamp_id is empty where
            it is no lamp of the map; accepted is 1 where it counts for the position. symbols: the chips of

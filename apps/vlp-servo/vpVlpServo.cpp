@@ -142,14 +142,31 @@ private:
           m_log.poses.add(picture.timestamp, picture.location.fix.wMb);
         }
       }
+      if ((step.share > 0) != m_moving) {
+        progress.clear();
+        tellMotion(step);
+      }
       progress.show(static_cast<size_t>(std::min(1.0, step.reference.s / end) * marks));
       return !vpInterrupt::requested() && !key.pressed() && display.show(step, pictures);
     };
     m_log.run = loop.run();
   }
 
+  //! Where it may not move any more, and where it may again.
+  void tellMotion(const vpServoStep &step)
+  {
+    m_moving = step.share > 0;
+    if (!m_moving) {
+      spdlog::warn("{:.2f} s: the robot stands: {}", step.time, vpOneLine(step.waiting));
+    } else if (m_hasMoved) {
+      spdlog::info("{:.2f} s: it goes on", step.time);
+    }
+    m_hasMoved = true;
+  }
+
   vpVlpServoOptions m_options;
   vpServoLog m_log;
+  bool m_moving = false, m_hasMoved = false;
 };
 } // namespace
 

@@ -47,7 +47,8 @@ for which it was predicted), in simulation truth.tum, and track.svg and track.pn
 The folder appears whole, at the end.
 
 The robot does not move before three pictures in a row have shown a tracked pose. It slows where the pose is
-uncertain by more than 20 mm, stands and waits beyond 50 mm, and where no picture comes for 0.5 s; the run ends
+uncertain by more than 20 mm. It stands and waits beyond 50 mm, where no picture comes for 0.5 s, and where a pose
+is relocated or ambiguous; standard error says why. The run ends
 after 20 s of waiting, at the fence, with a low battery, and on any error of the base. It ends too on Ctrl-C,
 SIGTERM, any key in the terminal and a click in the window. The base is told to stop in each of these cases.
 

@@ -202,6 +202,36 @@ TEST(VlpLocateTracking, StateGoesFromFixOverTrackingAndCoastingToNone)
   EXPECT_EQ(fixes.text(15, 13), "coasting");
 }
 
+// So few lamps may have given way to copies as well, the more probably the farther it seems to be.
+TEST(VlpLocateTracking, RelocationIsToldUntilAThirdLampBearsItOut)
+{
+  const std::vector<vpLocateScene::Lamp> two(vpLocateScene::lamps.begin(), vpLocateScene::lamps.begin() + 2);
+  for (const auto &[x, expected] : {std::pair(0.12, "relocated"), std::pair(0.26, "ambiguous")}) {
+    Recording run;
+    const vpHomogeneousMatrix there = vpLocateScene::robot(x, -0.04, 0.5);
+    run.write("two.png",
+              encoded(".png", vpLocateScene::picture(vpLocateScene::robot(0.06, -0.04, 0.5), two)));
+    run.write("away.png", encoded(".png", vpLocateScene::picture(there, two)));
+    run.write("all.png", encoded(".png", vpLocateScene::picture(there)));
+    std::vector<std::pair<double, std::string>> frames;
+    for (int k = 0; k < 18; ++k) {
+      frames.emplace_back(0.1 * k, k < 8 ? "two" : (k < 13 ? "away" : "all"));
+    }
+    run.list(frames);
+    const vpCsvTable fixes = run.fixes();
+    ASSERT_EQ(fixes.rows(), frames.size());
+    for (size_t row = 3; row < frames.size(); ++row) {
+      EXPECT_EQ(fixes.text(row, 13), frames[row].second == "away" ? expected : "tracking") << row;
+    }
+    const std::string place = vpNumberText(x) + "0, y -0.040 m: ";
+    EXPECT_EQ(count(run.said, "warning: 0.800 s: x " + place + "relocated: "), 1u) << run.said;
+    EXPECT_EQ(count(run.said, "1.300 s: x " + place + "borne out by 3 lamps"), 1u) << run.said;
+    EXPECT_EQ(count(run.said, "relocated"), 1u) << run.said;
+    EXPECT_EQ(vpFixLog::load(run / "fixes.csv").fixes[12].hasPosition(),
+              expected == std::string("relocated"));
+  }
+}
+
 TEST(VlpLocateTracking, WithoutTrackingEachFrameIsAsIfItWereAlone)
 {
   Recording run;

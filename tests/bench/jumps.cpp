@@ -24,17 +24,6 @@ struct Outcome {
   double farthest = 0; // m, error of such a pose
 };
 
-//! Of x, y and yaw the one that is farthest off, in its standard deviations.
-double sigmasOff(const vpVlpFix &fix, const vpPlannedPlace &truth, double &error)
-{
-  const double x = fix.wMb[0][3] - truth.x, y = fix.wMb[1][3] - truth.y,
-               turn = std::remainder(std::atan2(fix.wMb[1][0], fix.wMb[0][0]) - truth.yaw, 2 * M_PI);
-  error = std::hypot(x, y);
-  return std::max({std::abs(x) / std::sqrt(fix.covariance(0, 0)),
-                   std::abs(y) / std::sqrt(fix.covariance(1, 1)),
-                   std::abs(turn) / std::sqrt(fix.covariance(5, 5))});
-}
-
 Outcome jump(size_t lamps, double framesPerSecond, bool driving, std::mt19937_64 &generator)
 {
   std::uniform_real_distribution<double> uniform;
@@ -63,8 +52,8 @@ Outcome jump(size_t lamps, double framesPerSecond, bool driving, std::mt19937_64
   for (int k = 0; k < before + after; ++k) {
     const double t = k / framesPerSecond;
     const vpVlpLocation location = localizer.locate(t, world.see(t, place, generator));
-    double error = 1;
-    const double off = location.fix.valid ? sigmasOff(location.fix, place(t), error) : 0;
+    const double error = location.fix.valid ? vpErrorOf(location.fix, place(t)) : 1,
+                 off = location.fix.valid ? vpSigmasOff(location.fix, place(t)) : 0;
     ++outcome.frames;
     outcome.fixes += location.fix.valid;
     outcome.worst = std::max(outcome.worst, off);

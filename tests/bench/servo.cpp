@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // The simulated TurtleBot on its paths, its pose from the lamps, from odometry, or from commands alone.
-// bench_servo [fast|slow|shapes|start|all] [SEEDS]: rows of Markdown tables; from the top of the
+// bench_servo [fast|slow|shapes|start|spoofed|all] [SEEDS]: rows of Markdown tables; from the top of the
 // repository. VLP_SERVO_SCENARIO: another world than data/scenarios/servo.yaml.
 
 #include <algorithm>
@@ -255,6 +255,105 @@ void start(int seeds)
     }
   }
 }
+
+//! The localizer gets no odometry.
+class NoOdometry : public vpPictureFeed
+{
+public:
+  explicit NoOdometry(vpPictureFeed &feed) : m_feed(feed) {}
+  void addOdometry(const vpOdometry &) override {}
+  std::optional<vpLocatedPicture> next(double now) override { return m_feed.next(now); }
+
+private:
+  vpPictureFeed &m_feed;
+};
+
+//! Of a drive under two lamps that give way to two with their frequencies, 36 cm beside.
+struct Spoofed {
+  double stood = 0;    // s, from then until it stands for good; NaN: it drove on
+  double farthest = 0; // m, error of the poses on which it drove
+  std::string reason;  // of its end
+};
+
+Spoofed spoofedDrive(bool odometry, double speed, double from, std::uint64_t seed)
+{
+  constexpr double always = 1e9, aside = 0.36; // s, m
+  vpScenario scenario = world();
+  for (const size_t unused : {0, 2}) {
+    scenario.lamps[unused].dark.emplace_back(-1, always);
+  }
+  for (const size_t lamp : {1, 3}) {
+    vpScenario::Lamp copy = scenario.lamps[lamp];
+    copy.shift.y() = aside;
+    copy.dark.emplace_back(-1, from);
+    scenario.lamps[lamp].dark.emplace_back(from, always);
+    scenario.lamps.push_back(copy);
+  }
+  const Drive line;
+  const vpPathPoint begin = line.path.at(0);
+  vpServoSimulationSettings settings;
+  settings.start = {begin.place.x(), begin.place.y(), begin.heading};
+  vpServoSimulation simulation(scenario, seed, settings);
+  NoOdometry none(simulation);
+  vpVlpPose poses(odometry ? static_cast<vpPictureFeed &>(simulation) : none);
+  vpServoLoopSettings servo;
+  servo.follower.reference.speed = speed;
+  servo.safety.giveUp = 4; // s
+  vpServoLoop loop(simulation.robot(), poses, simulation, line.path, servo);
+  Spoofed result;
+  loop.watch = [&](const vpServoStep &step, const std::vector<vpLocatedPicture> &pictures) {
+    for (const vpLocatedPicture &picture : pictures) {
+      const vpHomogeneousMatrix &wMb = picture.location.fix.wMb, truth = simulation.wMb(picture.timestamp);
+      const double error = std::hypot(wMb[0][3] - truth[0][3], wMb[1][3] - truth[1][3]);
+      result.farthest = step.share > 0 ? std::max(result.farthest, error) : result.farthest;
+    }
+    return true;
+  };
+  const vpServoRun run = loop.run();
+  result.reason = run.reason;
+  constexpr double standing = 0.002, step = 0.01; // m/s, s
+  for (double time = from; time < simulation.now(); time += step) {
+    result.stood = std::abs(simulation.robot().twist(time).v) < standing ? result.stood : time + step - from;
+  }
+  result.stood = run.end == vpServoRun::End::arrived ? NAN : result.stood;
+  return result;
+}
+
+void spoofed(int seeds)
+{
+  std::printf(
+      "\n| two lamps give way to copies 36 cm beside | drives | arrived | stands after: median, longest, s "
+      "| largest error while it drives, mm | reason |\n|---|---|---|---|---|---|\n");
+  for (const bool odometry : {true, false}) {
+    for (const double speed : {0.1, 0.2}) {
+      std::vector<Spoofed> all(static_cast<size_t>(seeds));
+      vpRunTrials(seeds, [&](int seed, std::mt19937_64 &) {
+        const double from = 1.5 + seed / (world().frameRate * seeds); // s, all through a picture
+        all[static_cast<size_t>(seed)] =
+            spoofedDrive(odometry, speed, from, static_cast<std::uint64_t>(seed + 1));
+      });
+      std::vector<double> stood;
+      double farthest = 0;
+      std::string reason = "-";
+      for (const Spoofed &one : all) {
+        farthest = std::max(farthest, one.farthest);
+        if (!std::isnan(one.stood)) {
+          stood.push_back(one.stood);
+          reason = one.reason;
+        }
+      }
+      std::printf("| %s odometry, %g m/s | %d | %zu |", odometry ? "with" : "without", speed, seeds,
+                  all.size() - stood.size());
+      if (stood.empty()) {
+        std::printf(" - |");
+      } else {
+        std::printf(" %.2f, %.2f |", vpPercentile(stood, 0.5), vpPercentile(stood, 1));
+      }
+      std::printf(" %.2f | %s |\n", 1000 * farthest, reason.c_str());
+      std::fflush(stdout);
+    }
+  }
+}
 } // namespace
 
 int main(int argc, char **argv)
@@ -262,7 +361,7 @@ int main(int argc, char **argv)
   const std::string part = argc > 1 ? argv[1] : "all";
   const int seeds = argc > 2 ? std::max(1, std::atoi(argv[2])) : 20;
   const std::vector<std::pair<std::string, std::function<void(int)>>> parts = {
-      {"fast", fast}, {"slow", slow}, {"shapes", shapes}, {"start", start}};
+      {"fast", fast}, {"slow", slow}, {"shapes", shapes}, {"start", start}, {"spoofed", spoofed}};
   for (const auto &[name, print] : parts) {
     if (part == "all" || part == name) {
       print(seeds);

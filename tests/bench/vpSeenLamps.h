@@ -116,7 +116,10 @@ public:
   double pointSigma = 0.03; // px, of a lamp's middle, as observations state it
 
   //! \param lamps How many there are: up to four, 1.6 m above the camera.
-  explicit vpSeenLamps(size_t lamps)
+  explicit vpSeenLamps(size_t lamps) : vpSeenLamps(places(lamps)) {}
+
+  //! \param positions Of the lamps, m.
+  explicit vpSeenLamps(const std::vector<Eigen::Vector3d> &positions)
   {
     rig.width = 800;
     rig.height = 600;
@@ -126,11 +129,10 @@ public:
     rig.bMc[0][3] = 0.05;
     rig.bMc[1][3] = 0.02;
     rig.bMc[2][3] = 0.2;
-    static const double places[4][2] = {{-0.5, -0.4}, {0.5, 0.4}, {0.45, -0.45}, {-0.4, 0.5}};
-    for (size_t k = 0; k < lamps; ++k) {
+    for (size_t k = 0; k < positions.size(); ++k) {
       vpLamp lamp;
       lamp.id = std::string(1, static_cast<char>('A' + k));
-      lamp.position = {places[k][0], places[k][1], 1.8 + 0.05 * static_cast<double>(k)};
+      lamp.position = positions[k];
       lamp.size = 0.175;
       lamp.modulation.kind = vpModulation::Kind::pwm;
       lamp.modulation.frequency = 1500 + 500 * static_cast<double>(k);
@@ -229,6 +231,13 @@ public:
   }
 
 private:
+  static std::vector<Eigen::Vector3d> places(size_t lamps)
+  {
+    const std::vector<Eigen::Vector3d> all = {
+        {-0.5, -0.4, 1.8}, {0.5, 0.4, 1.85}, {0.45, -0.45, 1.9}, {-0.4, 0.5, 1.95}};
+    return {all.begin(), all.begin() + static_cast<long>(lamps)};
+  }
+
   //! \return m, along the camera's axis.
   double project(const Eigen::Vector3d &position, const vpHomogeneousMatrix &wMb,
                  Eigen::Vector2d &pixel) const
@@ -243,5 +252,20 @@ private:
   vpCameraParameters m_camera;         // likewise
   std::vector<Eigen::Vector3d> m_hung; // m, likewise
 };
+
+//! Horizontal, m.
+inline double vpErrorOf(const vpVlpFix &fix, const vpPlannedPlace &truth)
+{
+  return std::hypot(fix.wMb[0][3] - truth.x, fix.wMb[1][3] - truth.y);
+}
+
+//! Of x, y and yaw the one that is farthest off, in its standard deviations.
+inline double vpSigmasOff(const vpVlpFix &fix, const vpPlannedPlace &truth)
+{
+  const double turn = std::remainder(std::atan2(fix.wMb[1][0], fix.wMb[0][0]) - truth.yaw, 2 * M_PI);
+  return std::max({std::abs(fix.wMb[0][3] - truth.x) / std::sqrt(fix.covariance(0, 0)),
+                   std::abs(fix.wMb[1][3] - truth.y) / std::sqrt(fix.covariance(1, 1)),
+                   std::abs(turn) / std::sqrt(fix.covariance(5, 5))});
+}
 
 #endif

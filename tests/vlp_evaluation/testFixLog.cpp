@@ -64,9 +64,9 @@ TEST(FixLog, BadFilesAreRefusedWithFileLineAndColumn)
   const std::vector<std::pair<std::string, std::string>> all = {
       {"nan,1,2,3,0,0,0,,,,,,A,fix,0.1\n", ":3: timestamp_s: nan, expected a finite number"},
       {"1,1,2,3,0,0,0,,,,,,A,good,0.1\n",
-       ":3: state: good, expected fix, tracking, coasting, ambiguous or none"},
+       ":3: state: good, expected fix, tracking, coasting, relocated, ambiguous or none"},
       {"1,1,2,3,0,0,0,,,,,,A,,0.1\n",
-       ":3: state: nothing, expected fix, tracking, coasting, ambiguous or none"},
+       ":3: state: nothing, expected fix, tracking, coasting, relocated, ambiguous or none"},
       {"1,,2,3,0,0,0,,,,,,A,fix,0.1\n", ":3: x: nothing, expected a finite number"},
       {"1,1,2,nan,0,0,0,,,,,,A,ambiguous,0.1\n", ":3: z: nan, expected a finite number"},
       {"1,1,2,3,0,0,0,-1,,,,,A,fix,0.1\n", ":3: sigma_x: -1, expected a number of 0 or more"},

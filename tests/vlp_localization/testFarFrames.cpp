@@ -107,6 +107,23 @@ TEST(FarFrames, FirstFramesOfARobotThatDrivesAreWithinTheirSigma)
   }
 }
 
+// Two lamps tell nothing of the way that it drives between their lines.
+TEST(FarFrames, FirstFrameUnderTwoLampsKnowsTheWayByOdometry)
+{
+  const Pair pair;
+  for (const auto &[v, w] : {std::pair(0.2, 0.0), std::pair(-0.2, 0.8)}) {
+    const Path path = drives(-1, 9, v, w);
+    vpVlpLocalizer localizer = pair.localizer();
+    for (double t = -0.1; t < 0.1; t += 0.02) {
+      localizer.filter.addOdometry({t, v, w});
+    }
+    const vpVlpFix fix = localizer.process(pair.frame(0, path)).fix;
+    ASSERT_TRUE(fix.valid) << fix.refusal;
+    EXPECT_TRUE(isAt(fix, path(0), 4)) << w;
+    EXPECT_LT(std::hypot(fix.wMb[0][3] - path(0).x, fix.wMb[1][3] - path(0).y), 0.0005) << w;
+  }
+}
+
 // Where frames are far apart a filter that began anew with each would carry nothing.
 TEST(FarFrames, AtThreeFramesASecondItFollows)
 {

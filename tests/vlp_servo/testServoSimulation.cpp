@@ -83,6 +83,36 @@ vpScenario darkened(double from, double until)
   return scenario;
 }
 
+//! Two lamps alone; from \e from on, two others with their frequencies shine 36 cm beside, and they are dark.
+vpScenario spoofed(double from)
+{
+  constexpr double always = 1e9; // s
+  vpScenario scenario = world();
+  for (const size_t unused : {0, 2}) {
+    scenario.lamps[unused].dark.emplace_back(-1, always);
+  }
+  for (const size_t lamp : {1, 3}) {
+    vpScenario::Lamp copy = scenario.lamps[lamp];
+    copy.shift.y() = 0.36;
+    copy.dark.emplace_back(-1, from);
+    scenario.lamps[lamp].dark.emplace_back(from, always);
+    scenario.lamps.push_back(copy);
+  }
+  return scenario;
+}
+
+//! The localizer gets no odometry.
+class NoOdometry : public vpPictureFeed
+{
+public:
+  explicit NoOdometry(vpPictureFeed &feed) : m_feed(feed) {}
+  void addOdometry(const vpOdometry &) override {}
+  std::optional<vpLocatedPicture> next(double now) override { return m_feed.next(now); }
+
+private:
+  vpPictureFeed &m_feed;
+};
+
 //! Largest true speed from \e from to \e to, m/s.
 double fastest(vpServoSimulation &world, double from, double to)
 {
@@ -189,6 +219,48 @@ TEST(ServoSimulation, LampsAndOdometryThatFailBringItToAStandWithin300MsAndItGoe
   EXPECT_GT(fastest(lamps, 1.4, crossed), 0.1);
   EXPECT_LT(fastest(lamps, crossed + 0.3, 6), standing);
   EXPECT_EQ(run.end, vpServoRun::End::arrived) << run.reason;
+}
+
+// By right odometry it knows better, and arrives.
+TEST(ServoSimulation, SpoofedPairBesideOdometryIsNotFollowed)
+{
+  for (const std::uint64_t seed : {2, 3, 4}) {
+    vpServoSimulation lamps(spoofed(1.5), seed, onStartOf(line));
+    vpVlpPose poses(lamps);
+    vpServoLoop loop(lamps.robot(), poses, lamps, line, {});
+    double farthest = 0; // m
+    loop.watch = [&](const vpServoStep &, const std::vector<vpLocatedPicture> &pictures) {
+      for (const vpLocatedPicture &picture : pictures) {
+        const vpHomogeneousMatrix &wMb = picture.location.fix.wMb, truth = lamps.wMb(picture.timestamp);
+        farthest = std::max(farthest, std::hypot(wMb[0][3] - truth[0][3], wMb[1][3] - truth[1][3]));
+      }
+      return true;
+    };
+    const vpServoRun run = loop.run();
+    EXPECT_EQ(run.end, vpServoRun::End::arrived) << run.reason;
+    EXPECT_LT(farthest, 0.01);
+  }
+}
+
+TEST(ServoSimulation, SpoofedPairWithoutOdometryBringsItToAStandWithin300MsAndItSaysWhy)
+{
+  vpServoLoopSettings settings;
+  settings.follower.reference.speed = 0.1;
+  settings.safety.giveUp = 4;                   // s, longer than the place before stays known
+  for (const double from : {1.5, 1.52, 1.54}) { // s, before a picture and in the midst of one
+    vpServoSimulation lamps(spoofed(from), 2, onStartOf(line));
+    NoOdometry feed(lamps);
+    vpVlpPose poses(feed);
+    const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, line, settings).run();
+    double stood = 0; // s, since then
+    for (double time = from; time < lamps.now(); time += 0.01) {
+      stood = std::abs(lamps.robot().twist(time).v) < standing ? stood : time + 0.01 - from;
+    }
+    EXPECT_GT(fastest(lamps, 1.4, from), 0.08);
+    EXPECT_LT(stood, 0.3) << from;
+    EXPECT_EQ(run.end, vpServoRun::End::failed);
+    EXPECT_NE(run.reason.find("another place"), std::string::npos) << run.reason;
+  }
 }
 
 TEST(ServoSimulation, DarkRoomNeverMoves)

@@ -47,11 +47,12 @@ vpLoggedFix::State stateOf(const vpCsvTable &table, size_t row)
   static const std::map<std::string, State> states = {{"fix", State::fix},
                                                       {"tracking", State::tracking},
                                                       {"coasting", State::coasting},
+                                                      {"relocated", State::relocated},
                                                       {"ambiguous", State::ambiguous},
                                                       {"none", State::none}};
   const auto found = states.find(table.text(row, state));
   if (found == states.end()) {
-    table.fail(row, state, "expected fix, tracking, coasting, ambiguous or none");
+    table.fail(row, state, "expected fix, tracking, coasting, relocated, ambiguous or none");
   }
   return found->second;
 }

@@ -47,7 +47,7 @@ vpPoseHypothesis::vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypothe
 {
 }
 
-void vpPoseHypothesis::begin(const vpLampFrame &frame)
+void vpPoseHypothesis::begin(const vpLampFrame &frame, bool isFirst)
 {
   trust.forgetPlaces();
   for (const vpFrameLamp &lamp : frame.lamps) { // others than those that agree with each other are left out
@@ -55,7 +55,7 @@ void vpPoseHypothesis::begin(const vpLampFrame &frame)
   }
   m_time = frame.timestamp;
   weigh(frame, 0);
-  filter.startAgain(); // about what they show
+  filter.startAgain(isFirst); // about what they show
   m_parted = false;
   m_modes = vpMotionModes(m_hypotheses);
   m_logLikelihood = weigh(frame, 0);

@@ -33,8 +33,9 @@ public:
   //! \param filter Its settings and odometry.
   vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses, const vpLampTrust &trust);
 
-  //! Begins with a frame, at the pose at which the filter was started.
-  void begin(const vpLampFrame &frame);
+  //! Begins with a frame, at the pose at which the filter was started. \param isFirst There was no place: the
+  //! odometry tells how the robot moves. Else what is wrong may be the odometry.
+  void begin(const vpLampFrame &frame, bool isFirst);
   //! Goes on to a frame. \return Log likelihood of the frame.
   double follow(const vpLampFrame &frame);
   //! As it would be after the latest frame, were none of that frame's lamps the map's.

@@ -121,13 +121,14 @@ bool vpPoseMixture::agree(const vpPoseHypothesis &place, const vpPoseHypothesis 
 
 void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
 {
+  if (m_places.size() > 1 && !lost()) {
+    m_places.erase(std::remove_if(m_places.begin(), m_places.end(), isLost), m_places.end());
+  }
   std::sort(m_places.begin(), m_places.end(),
             [](const vpPoseHypothesis &a, const vpPoseHypothesis &b) { return a.logWeight > b.logWeight; });
   const double most = m_places.front().logWeight;
   const auto negligible = [&](const vpPoseHypothesis &place) {
-    return place.logWeight < most + std::log(hypotheses.negligible) ||
-           (&place != &m_places.front() &&
-            place.filter.state(place.filter.pose()) == vpVlpFilter::State::lost);
+    return place.logWeight < most + std::log(hypotheses.negligible);
   };
   static const size_t many = 4; // places, each of which takes as long as one
   size_t kept = 1;
@@ -152,9 +153,24 @@ void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
   }
 }
 
+bool vpPoseMixture::isLost(const vpPoseHypothesis &place)
+{
+  return place.filter.state(place.filter.pose()) == vpVlpFilter::State::lost;
+}
+
 bool vpPoseMixture::lost() const
 {
-  return likeliest().filter.state(likeliest().filter.pose()) == vpVlpFilter::State::lost;
+  return std::all_of(m_places.begin(), m_places.end(), isLost);
+}
+
+bool vpPoseMixture::lostAt(double time) const
+{
+  return std::all_of(m_places.begin(), m_places.end(), [time](const vpPoseHypothesis &place) {
+    vpVlpFilter there = place.filter;
+    there.rouse();
+    there.advance(time);
+    return there.state(there.pose()) == vpVlpFilter::State::lost;
+  });
 }
 
 void vpPoseMixture::tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses,

@@ -43,10 +43,13 @@ public:
   void reduce(const vpVlpHypotheses &hypotheses);
   //! Whether all are so uncertain that they mean nothing.
   bool lost() const;
+  //! Likewise at a time to come (s), had the robot started or stopped since.
+  bool lostAt(double time) const;
   //! The likeliest pose, its covariance that of all, and what it rests on.
   void tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpLocation &location) const;
 
 private:
+  static bool isLost(const vpPoseHypothesis &place);
   static bool agree(const vpPoseHypothesis &place, const vpPoseHypothesis &other);
 
   std::vector<vpPoseHypothesis> m_places; // the likeliest first

@@ -80,14 +80,22 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   m_common.setZero();
   m_startX = m_x;
   m_startP = m_P;
+  while (m_odometry.size() > 1 && m_odometry[1].timestamp <= m_time) {
+    m_odometry.erase(m_odometry.begin());
+  }
+  m_startOdometry = m_odometry;
 }
 
-void vpVlpFilter::startAgain()
+void vpVlpFilter::startAgain(bool odometryToo)
 {
   Eigen::Matrix<double, 9, 1> path;
   path << m_x.segment<6>(mark0), m_x.segment<3>(vx);
   m_x = m_startX;
   m_P = m_startP;
+  if (odometryToo) {
+    m_odometry = m_startOdometry;
+    m_followed = -1e300;
+  }
   const auto started = static_cast<size_t>((m_startP.rows() - lamps) / 3);
   m_lamps.resize(started);
   m_placeSigmas.resize(started);

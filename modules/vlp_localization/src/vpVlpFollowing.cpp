@@ -118,7 +118,7 @@ vpPoseHypothesis vpVlpLocalizer::placeAt(const vpVlpFix &fix, const vpLampFrame 
     }
   }
   vpPoseHypothesis place(start, hypotheses, lamps);
-  place.begin(frame);
+  place.begin(frame, m_places->empty());
   return place;
 }
 

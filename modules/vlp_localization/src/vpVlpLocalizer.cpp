@@ -104,7 +104,8 @@ bool vpVlpLocalizer::open(double time, vpVlpLocation &location)
     *m_places = vpPoseMixture();
   }
   m_lastFrame = time;
-  if (filter.started() && filter.state(filterAt(time).pose()) == vpVlpFilter::State::lost) {
+  if (filter.started() && filter.state(filterAt(time).pose()) == vpVlpFilter::State::lost &&
+      m_places->lostAt(time)) {
     filter.stop(); // so long ago that what it expects of the lamps would mean nothing
   }
   if (!filter.started() && !m_places->empty()) {

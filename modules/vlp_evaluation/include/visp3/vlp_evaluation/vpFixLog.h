@@ -21,7 +21,8 @@ struct VISP_EXPORT vpLoggedFix {
     ambiguous, //!< a second pose explains the frame as well
     fix,       //!< of one frame alone
     tracking,  //!< carried from frame to frame and corrected
-    coasting   //!< the same, uncertain: lamps are too few or hidden
+    coasting,  //!< the same, uncertain: lamps are too few or hidden
+    relocated  //!< where no motion leads to, and no third lamp has borne it out yet
   };
 
   //! Whether there is a position that is the only one.

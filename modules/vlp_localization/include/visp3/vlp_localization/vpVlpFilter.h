@@ -109,8 +109,8 @@ public:
   //! The same with the lamps that the state has, their errors as uncertain as at first: takes no memory.
   void restart(const vpHomogeneousMatrix &wMb, double time);
   //! The same start once more, linearised, up to conclude(), about what the lamps since then have shown:
-  //! their marked() pose and velocity. The lamps are to follow again.
-  void startAgain();
+  //! their marked() pose and velocity. The lamps are to follow again, and so is the odometry \e odometryToo.
+  void startAgain(bool odometryToo = false);
   void stop() { m_started = false; }
   bool started() const { return m_started; } // else time, lamps and marks change nothing
 
@@ -293,6 +293,7 @@ private:
   std::vector<std::string> m_lamps;                   // ids whose errors are states, in their order
   std::vector<double> m_placeSigmas;                  // m, of each at the start
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
+  std::vector<vpOdometry> m_startOdometry;            // m_odometry at the start
   std::vector<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
   double m_tiltDoubt = 0;             // rad, added to what the rig says of roll and pitch
   double m_placeDoubt = 0;            // m, added to what the map says of its lamps
