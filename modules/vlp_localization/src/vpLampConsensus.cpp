@@ -12,6 +12,8 @@
 #include <visp3/core/vpMeterPixelConversion.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
+#include "vpLampGeometry.h"
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -79,13 +81,6 @@ double diameterOf(const vpLamp &lamp, const vpHomogeneousMatrix &cMw, const vpCa
     across.col(axis) = ends[1] - ends[0];
   }
   return 0.5 * std::sqrt(across.squaredNorm() + 2 * std::abs(across.determinant()));
-}
-
-vpVlpFix refusal(const std::string &reason)
-{
-  vpVlpFix fix;
-  fix.refusal = reason;
-  return fix;
 }
 
 } // namespace
@@ -196,7 +191,7 @@ vpVlpFix vpLampConsensus::withoutWrongSizes(const vpVlpFix &all, const std::vect
   for (std::vector<std::string> wrong; fix.valid && !(wrong = wrongSizes(fix, usable, remark)).empty();) {
     dropped += wrong.size();
     if (dropped > most) {
-      return refusal(remark);
+      return refusedFix(remark);
     }
     lamps.erase(std::remove_if(lamps.begin(), lamps.end(),
                                [&](const vpLampSight &lamp) {
@@ -212,8 +207,7 @@ vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &
 {
   static const size_t fewest = 2;
   if (usable.size() < fewest) {
-    return refusal(usable.empty() ? "no lamp of the map seen"
-                                  : "one lamp of the map seen, two are needed for a position");
+    return refusedFix(tooFewLamps(usable.size()));
   }
   std::vector<vpLampSight> lamps = sights(usable);
   vpVlpFix fix = solver(lamps);
@@ -221,7 +215,7 @@ vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &
   const size_t fewestLeft = usable.size() - usable.size() / 4;
   while (fix.valid && !agree(fix, lamps)) {
     if (lamps.size() <= fewestLeft) {
-      return refusal("lamps " + joined(fix.lamps) + " do not agree on one place");
+      return refusedFix("lamps " + joined(fix.lamps) + " do not agree on one place");
     }
     fix = withoutWorst(lamps, solver);
   }
@@ -274,7 +268,7 @@ vpVlpFix vpLampConsensus::withoutMisplaced(const vpVlpFix &all, std::vector<vpLa
 vpVlpFix vpLampConsensus::withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const
 {
   std::vector<vpLampSight> kept = lamps;
-  vpVlpFix best = refusal("no lamps agree on one place");
+  vpVlpFix best = refusedFix("no lamps agree on one place");
   double least = 0;
   for (size_t left = 0; left < lamps.size(); ++left) {
     std::vector<vpLampSight> others = lamps;

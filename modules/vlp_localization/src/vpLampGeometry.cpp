@@ -220,6 +220,11 @@ std::string sightProblem(const std::vector<vpLampSight> &lamps)
   return "";
 }
 
+std::string tooFewLamps(size_t seen)
+{
+  return seen == 0 ? "no lamp of the map seen" : "one lamp of the map seen, two are needed for a position";
+}
+
 vpVlpFix refusedFix(const std::string &refusal)
 {
   vpVlpFix fix;

@@ -153,6 +153,9 @@ struct vpLampPair {
 //! they can.
 std::string sightProblem(const std::vector<vpLampSight> &lamps);
 
+//! Why so few lamps give no position.
+std::string tooFewLamps(size_t seen);
+
 //! A fix that is none.
 vpVlpFix refusedFix(const std::string &refusal);
 

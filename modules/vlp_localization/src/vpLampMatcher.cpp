@@ -31,17 +31,6 @@ void expect(bool right, const std::string &name, double came, const std::string 
   }
 }
 
-double square(double x)
-{
-  return x * x;
-}
-
-double greatestEigenvalue(const Eigen::Matrix2d &m)
-{
-  const double half = 0.5 * m.trace();
-  return half + std::sqrt(std::max(0.0, half * half - m.determinant()));
-}
-
 //! The ray of an observation, turned upright. False where it does not point above the horizon.
 bool turnUpright(const vpLampObservation &observation, const vpVlpRig &rig, double tiltSigma,
                  vpSeenLamp &seen)
@@ -57,8 +46,9 @@ bool turnUpright(const vpLampObservation &observation, const vpVlpRig &rig, doub
   const Eigen::Matrix2d byRay = (R.topLeftCorner<2, 2>() - q * R.block<1, 2>(2, 0)) / up.z();
   seen.ray = {q.x(), q.y()};
   // A lean moves all rays alike, which the pose takes up, but for a part that grows with their square.
-  seen.variance =
-      greatestEigenvalue(byRay * sight.covariance * byRay.transpose()) + square(tiltSigma * q.squaredNorm());
+  const Eigen::Matrix2d covariance = byRay * sight.covariance * byRay.transpose();
+  const double lean = tiltSigma * q.squaredNorm();
+  seen.variance = covariance.selfadjointView<Eigen::Lower>().operatorNorm() + lean * lean;
   return std::isfinite(seen.variance);
 }
 
@@ -68,10 +58,8 @@ void addOptions(const vpLampObservation &observation, const vpLampIndex &index, 
   const double all = static_cast<double>(index.size());
   for (const vpLedIdCandidate &candidate : observation.candidates) {
     const double p = candidate.probability;
-    const size_t carriers =
-        candidate.identifier < index.identifiers() ? index.lampsOf(candidate.identifier).size() : 0;
-    if (carriers > 0 && p > 0) {
-      const double n = static_cast<double>(carriers);
+    const double n = static_cast<double>(index.carriers(candidate.identifier));
+    if (n > 0 && p > 0) {
       seen.options.push_back({candidate.identifier, vpLampIndex::nowhere, p, std::log(p * all / n)});
       seen.lamps += n;
     }
@@ -84,23 +72,11 @@ void addOptions(const vpLampObservation &observation, const vpLampIndex &index, 
   }
 }
 
-double probabilityOf(const vpSeenLamp &seen, size_t lamp, const vpLampIndex &index)
-{
-  for (const vpSeenLamp::Option &option : seen.options) {
-    if (lamp != vpLampMatch::noLamp && option.identifier == index.lamp(lamp).identifier) {
-      return option.probability;
-    }
-  }
-  return 0;
-}
-
 vpHomogeneousMatrix baseOf(const Place &place, const vpMountFrame &mount)
 {
-  const Complex camera = place.camera - place.heading * Complex(mount.btc.x(), mount.btc.y());
   vpBasePose pose;
-  pose.wRb << place.heading.real(), -place.heading.imag(), 0, place.heading.imag(), place.heading.real(), 0,
-      0, 0, 1;
-  pose.wtb = {camera.real(), camera.imag(), place.height - mount.btc.z()};
+  pose.wRb = Eigen::AngleAxisd(std::arg(place.heading), Eigen::Vector3d::UnitZ());
+  pose.wtb = Eigen::Vector3d(place.camera.real(), place.camera.imag(), place.height) - pose.wRb * mount.btc;
   return pose.wMb();
 }
 
@@ -111,11 +87,6 @@ std::string shown(const Place &place)
   text.precision(2);
   text << "(" << place.camera.real() << ", " << place.camera.imag() << ")";
   return text.str();
-}
-
-std::string tooFew(size_t seen)
-{
-  return seen == 0 ? "no lamp of the map seen" : "one lamp of the map seen, two are needed for a position";
 }
 
 std::string whyNot(const std::vector<Place> &places, size_t seen, bool complete)
@@ -162,37 +133,27 @@ bool isPose(const vpPoseHint &hint)
   return std::isfinite(sum) && hint.reach >= 0 && hint.turn >= 0;
 }
 
-bool near(const Place &place, const vpPlaceSearch::Bounds &bounds)
-{
-  return std::abs(place.camera - bounds.around) <= bounds.reach &&
-         std::abs(std::arg(place.heading * std::polar(1.0, -bounds.heading))) <= bounds.turn;
-}
-
 //! Of places that explain equally many regions about equally well the one near the last pose, or nullptr.
 const Place *decidedByHint(const vpPlaceSearch &search, const vpPlaceSearch::Bounds &bounds, double minOdds)
 {
   const Place *nearest = nullptr;
-  size_t most = 0;
+  size_t most = 0, near = 0;
   for (const Place &place : search.places()) {
-    if (place.logEvidence < search.places()[0].logEvidence - std::log(minOdds)) {
-      continue;
-    }
-    most = std::max(most, place.count);
-    if (near(place, bounds)) {
-      if (nearest != nullptr) {
-        return nullptr;
+    if (place.logEvidence >= search.places()[0].logEvidence - std::log(minOdds)) {
+      most = std::max(most, place.count);
+      if (bounds.near(place, 0)) {
+        nearest = &place;
+        ++near;
       }
-      nearest = &place;
     }
   }
-  const bool decided =
-      nearest != nullptr && nearest->count == most && !search.model().tooFewOnALine(*nearest);
+  const bool decided = near == 1 && nearest->count == most && !search.tooFewOnALine(*nearest);
   return decided ? nearest : nullptr;
 }
 } // namespace
 
-vpLampMatcher::vpLampMatcher(const vpVlpRig &rig, const vpLampMap &map, Search search)
-    : m_rig(rig), m_index(std::make_shared<vpLampIndex>(map, search == Search::scan))
+vpLampMatcher::vpLampMatcher(const vpVlpRig &rig, const vpLampMap &map)
+    : m_rig(rig), m_index(std::make_shared<vpLampIndex>(map))
 {
 }
 
@@ -241,7 +202,7 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   std::vector<size_t> which;
   const std::vector<vpSeenLamp> seen = seenLamps(observations, usable, which);
   if (seen.size() < 2) {
-    match.refusal = tooFew(seen.size());
+    match.refusal = tooFewLamps(seen.size());
     return match;
   }
 
@@ -254,8 +215,10 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
     match.wMb = baseOf(best, mount);
     const Place place = search.withoutUndecided(best);
     for (size_t k = 0; k < seen.size(); ++k) {
-      match.lamps[which[k]] = place.lamps[k];
-      match.probabilities[which[k]] = probabilityOf(seen[k], place.lamps[k], *m_index);
+      if (place.lamps[k] != vpLampMatch::noLamp) {
+        match.lamps[which[k]] = place.lamps[k];
+        match.probabilities[which[k]] = seen[k].option(m_index->lamp(place.lamps[k]))->probability;
+      }
     }
     return match;
   };
@@ -264,8 +227,7 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   const bool hinted = hint && isPose(*hint);
   const vpPlaceSearch::Bounds nearby = hinted ? around(anywhere, *hint, mount) : anywhere;
   if (hinted) {
-    vpPlaceSearch local(*this, *m_index, seen, area, nearby);
-    local.run();
+    const vpPlaceSearch local(*this, *m_index, seen, area, nearby);
     match.hypotheses += local.hypotheses();
     match.byHint = local.decided() && local.places()[0].count == seen.size();
     if (match.byHint) {
@@ -274,8 +236,8 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   }
 
   // The whole map; of places that explain the picture alike the last pose decides.
-  vpPlaceSearch search(*this, *m_index, seen, area, anywhere);
-  const bool complete = search.run();
+  const vpPlaceSearch search(*this, *m_index, seen, area, anywhere);
+  const bool complete = search.complete();
   match.hypotheses += search.hypotheses();
   if (search.decided()) {
     return accept(search, search.places()[0]);
