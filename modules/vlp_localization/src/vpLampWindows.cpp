@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vpLampTrust.h"
+#include "vpLampPicture.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -25,11 +25,13 @@ void vpLampWindows::expect(const vpVlpFilter &filter, const vpLampMap &map, cons
     if (!(height > 0 && apart < farthest * height && turn + place / height < doubtful)) {
       continue;
     }
-    Eigen::Vector2d middle, motion;
-    const Eigen::Vector2d extent = vpLampTrust::extentOf(lamp, pose.wMb, filter.velocity(), rig, lineTime);
-    if (!vpLampTrust::motionOf(lamp.position, pose.wMb, filter.velocity(), rig, middle, motion)) {
+    const vpLampPicture picture(lamp, {pose.wMb.linear(), pose.wMb.translation()}, rig);
+    if (!picture.inFront()) {
       continue;
     }
+    const Eigen::Vector2d extent = picture.extent(filter.velocity(), lineTime);
+    const Eigen::Vector2d motion = picture.motion(filter.velocity());
+    Eigen::Vector2d middle = picture.middle();
     const int along = rig.shutter.alongColumns() ? 0 : 1;
     const double lines = middle(along) - 0.5 * ((along == 0 ? rig.width : rig.height) - 1.0);
     middle += motion * lineTime * lines / std::max(0.1, 1 - motion(along) * lineTime);
