@@ -5,6 +5,7 @@
 #include "vpLampGeometry.h"
 
 #include <cmath>
+#include <sstream>
 
 #include <Eigen/Geometry>
 
@@ -21,14 +22,7 @@ Eigen::Matrix3d cross(const Eigen::Vector3d &v)
   return m;
 }
 
-void fromVisp(const vpHomogeneousMatrix &M, Eigen::Matrix3d &R, Eigen::Vector3d &t)
-{
-  for (unsigned int i = 0; i < 3; ++i) {
-    for (unsigned int j = 0; j < 3; ++j)
-      R(i, j) = M[i][j];
-    t(i) = M[i][3];
-  }
-}
+using vpMatrixOfVisp = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 } // namespace
 
 double vpBasePose::tilt() const
@@ -57,27 +51,22 @@ Eigen::Matrix<double, 6, 1> vpBasePose::stepTo(const vpBasePose &pose) const
 vpHomogeneousMatrix vpBasePose::wMb() const
 {
   vpHomogeneousMatrix M;
-  for (unsigned int i = 0; i < 3; ++i) {
-    for (unsigned int j = 0; j < 3; ++j)
-      M[i][j] = wRb(i, j);
-    M[i][3] = wtb(i);
-  }
+  Eigen::Map<vpMatrixOfVisp>(M.data).topRows<3>() << wRb, wtb;
   return M;
 }
 
 vpBasePose vpBasePose::of(const vpHomogeneousMatrix &wMb)
 {
-  vpBasePose pose;
-  fromVisp(wMb, pose.wRb, pose.wtb);
-  return pose;
+  const Eigen::Map<const vpMatrixOfVisp> M(wMb.data);
+  return {M.topLeftCorner<3, 3>(), M.topRightCorner<3, 1>()};
 }
 
 vpMountFrame::vpMountFrame(const vpVlpRig &rig)
-    : translationSigma(rig.translationSigma), rotationSigma(rig.rotationSigma),
+    : bRc(vpBasePose::of(rig.bMc).wRb), btc(vpBasePose::of(rig.bMc).wtb),
+      translationSigma(rig.translationSigma), rotationSigma(rig.rotationSigma),
       principalPointSigma(rig.principalPointSigma.value_or(0) / rig.camera.get_px()),
       focalLengthSigma(rig.focalLengthSigma.value_or(0))
 {
-  fromVisp(rig.bMc, bRc, btc);
 }
 
 vpPredictedRay predictRay(const Eigen::Vector3d &lamp, const vpBasePose &pose, const vpMountFrame &mount)
@@ -97,13 +86,13 @@ vpPredictedRay predictRay(const Eigen::Vector3d &lamp, const vpBasePose &pose, c
   return predicted;
 }
 
-Eigen::Matrix2d rayDoubt(const vpLampSight &lamp, const vpPredictedRay &predicted)
+Eigen::Matrix2d rayCovariance(const vpLampSight &lamp, const vpPredictedRay &predicted)
 {
   const Eigen::Matrix<double, 2, 3> byPosition = -predicted.derivative.leftCols<3>();
   return lamp.covariance + lamp.positionSigma * lamp.positionSigma * byPosition * byPosition.transpose();
 }
 
-Eigen::Matrix2d tiltDoubt(const vpBasePose &pose, const vpMountFrame &mount)
+Eigen::Matrix2d tiltCovariance(const vpBasePose &pose, const vpMountFrame &mount)
 {
   const Eigen::Matrix2d turn = pose.wRb.topLeftCorner<2, 2>();
   return turn * mount.rotationSigma.head<2>().cwiseAbs2().asDiagonal() * turn.transpose();
@@ -116,17 +105,14 @@ Eigen::MatrixXd byCameraTilt(const Eigen::Matrix<double, Eigen::Dynamic, 6> &byB
   return byBase.middleCols<2>(3) + byBase.leftCols<3>() * cross(pose.wRb * mount.btc).leftCols<2>();
 }
 
-Eigen::MatrixXd lensDoubt(const Eigen::VectorXd &rays, const vpMountFrame &mount)
+Eigen::MatrixXd lensCovariance(const Eigen::VectorXd &rays, const vpMountFrame &mount)
 {
-  Eigen::MatrixXd byPoint(rays.size(), 2);
-  for (Eigen::Index row = 0; row < rays.size(); row += 2) {
-    byPoint.middleRows<2>(row).setIdentity();
-  }
+  const Eigen::MatrixXd byPoint = Eigen::Matrix2d::Identity().replicate(rays.size() / 2, 1);
   return mount.principalPointSigma * mount.principalPointSigma * byPoint * byPoint.transpose() +
          mount.focalLengthSigma * mount.focalLengthSigma * rays * rays.transpose();
 }
 
-vpMatrix6d mountDoubt(const vpBasePose &pose, const vpMountFrame &mount)
+vpMatrix6d mountCovariance(const vpBasePose &pose, const vpMountFrame &mount)
 {
   Eigen::Matrix<double, 6, 4> byMount = Eigen::Matrix<double, 6, 4>::Zero(); // translation, yaw
   byMount.topLeftCorner<3, 3>() = -pose.wRb;
@@ -218,6 +204,14 @@ std::string sightProblem(const std::vector<vpLampSight> &lamps)
         return "lamp " + lamp.id + " is given twice; a lamp hangs in one place only";
   }
   return "";
+}
+
+std::string degrees(double angle)
+{
+  std::ostringstream text;
+  text.precision(3);
+  text << angle * 180 / M_PI << " degrees";
+  return text.str();
 }
 
 std::string tooFewLamps(size_t seen)

@@ -22,15 +22,7 @@ namespace
 {
 using Minimum = vpRayFit::Minimum;
 
-std::string degrees(double angle)
-{
-  std::ostringstream text;
-  text.precision(3);
-  text << angle * 180 / M_PI << " degrees";
-  return text.str();
-}
-
-// Weights are inverse covariances: a lamp without doubt has none.
+// Weights are inverse covariances, which a lamp that is exact has not.
 std::string weightProblem(const std::vector<vpLampSight> &lamps)
 {
   for (const vpLampSight &lamp : lamps) {
@@ -221,7 +213,7 @@ vpVlpFix fixOf(std::vector<Minimum> &minima, const vpRayFit &fit, const std::vec
     return refusedFix("the lamps do not determine the pose");
   if (free)
     addCurvature(fix.covariance, best, vpRayFit(lamps, mount, vpRayFit::Kind::freeTiltHeld), likelihood);
-  fix.covariance += mountDoubt(best.pose, mount);
+  fix.covariance += mountCovariance(best.pose, mount);
   fix.chiSquare = best.cost;
   fix.degreesOfFreedom = fit.degreesOfFreedom();
   fix.ambiguous = minima.size() > 1 && std::abs(minima[1].cost - best.cost) < 2 * std::log(likelihood);

@@ -10,16 +10,16 @@
 BEGIN_VISP_NAMESPACE
 
 vpRayFit::vpRayFit(const std::vector<vpLampSight> &lamps, const vpMountFrame &mount, Kind kind)
-    : m_lamps(lamps), m_mount(mount), m_tiltInDoubt(kind == Kind::level), m_six(kind == Kind::free),
-      m_fixedDoubt((!m_tiltInDoubt || !mount.tiltStated()) && !mount.lensStated())
+    : m_lamps(lamps), m_mount(mount), m_level(kind == Kind::level), m_six(kind == Kind::free),
+      m_fixedCovariance((!m_level || !mount.tiltStated()) && !mount.lensStated())
 {
   for (const vpLampSight &lamp : lamps)
-    m_fixedDoubt = m_fixedDoubt && lamp.positionSigma == 0;
+    m_fixedCovariance = m_fixedCovariance && lamp.positionSigma == 0;
 }
 
 int vpRayFit::rows() const
 {
-  const int angles = m_tiltInDoubt ? 0 : (m_mount.rotationSigma.x() > 0) + (m_mount.rotationSigma.y() > 0);
+  const int angles = m_level ? 0 : (m_mount.rotationSigma.x() > 0) + (m_mount.rotationSigma.y() > 0);
   return 2 * static_cast<int>(m_lamps.size()) + angles;
 }
 
@@ -28,13 +28,13 @@ int vpRayFit::degreesOfFreedom() const
   return rows() - (m_six ? 6 : 4);
 }
 
-vpRayFit::Linear vpRayFit::linearise(const vpBasePose &pose, bool withDoubt) const
+vpRayFit::Linear vpRayFit::linearise(const vpBasePose &pose, bool withCovariance) const
 {
   Linear linear;
   linear.residual.setZero(rows());
   linear.byBase.setZero(rows(), 6);
-  if (withDoubt)
-    linear.doubt.setZero(rows(), rows());
+  if (withCovariance)
+    linear.covariance.setZero(rows(), rows());
   for (size_t k = 0; k < m_lamps.size(); ++k) {
     const vpPredictedRay predicted = predictRay(m_lamps[k].position, pose, m_mount);
     if (!predicted.inFront) {
@@ -43,22 +43,22 @@ vpRayFit::Linear vpRayFit::linearise(const vpBasePose &pose, bool withDoubt) con
     }
     linear.residual.segment<2>(2 * k) = m_lamps[k].ray - predicted.ray;
     linear.byBase.middleRows<2>(2 * k) = predicted.derivative;
-    if (withDoubt)
-      linear.doubt.block<2, 2>(2 * k, 2 * k) = rayDoubt(m_lamps[k], predicted);
+    if (withCovariance)
+      linear.covariance.block<2, 2>(2 * k, 2 * k) = rayCovariance(m_lamps[k], predicted);
   }
-  if (withDoubt && m_mount.lensStated()) {
+  if (withCovariance && m_mount.lensStated()) {
     const Eigen::Index rows = 2 * static_cast<Eigen::Index>(m_lamps.size());
     Eigen::VectorXd rays(rows);
     for (size_t k = 0; k < m_lamps.size(); ++k) {
       rays.segment<2>(2 * k) = m_lamps[k].ray;
     }
-    linear.doubt.topLeftCorner(rows, rows) += lensDoubt(rays, m_mount);
+    linear.covariance.topLeftCorner(rows, rows) += lensCovariance(rays, m_mount);
   }
-  if (!m_tiltInDoubt)
+  if (!m_level)
     addTiltPrior(linear, pose);
-  else if (withDoubt && m_mount.tiltStated()) {
+  else if (withCovariance && m_mount.tiltStated()) {
     const Eigen::MatrixXd byTilt = byCameraTilt(linear.byBase, pose, m_mount);
-    linear.doubt += byTilt * tiltDoubt(pose, m_mount) * byTilt.transpose();
+    linear.covariance += byTilt * tiltCovariance(pose, m_mount) * byTilt.transpose();
   }
   return linear;
 }
@@ -67,22 +67,20 @@ vpRayFit::Linear vpRayFit::linearise(const vpBasePose &pose, bool withDoubt) con
 // wRb^T (z x e).
 void vpRayFit::addTiltPrior(Linear &linear, const vpBasePose &pose) const
 {
-  const Eigen::Vector3d up = pose.bUp();
-  Eigen::Matrix3d upByRotation = Eigen::Matrix3d::Zero();
-  upByRotation.col(0) = pose.wRb.row(1).transpose();  // z x x = y
-  upByRotation.col(1) = -pose.wRb.row(0).transpose(); // z x y = -x
-  const double angle[2] = {up.y(), -up.x()};
-  const Eigen::RowVector3d byRotation[2] = {upByRotation.row(1), -upByRotation.row(0)};
+  const Eigen::Matrix3d &R = pose.wRb;
+  const Eigen::Vector2d angle(R(2, 1), -R(2, 0));
+  Eigen::Matrix2d byRotation; // about x and y of w
+  byRotation << R(1, 1), -R(0, 1), -R(1, 0), R(0, 0);
   int row = 2 * static_cast<int>(m_lamps.size());
   for (int k = 0; k < 2; ++k) {
     const double sigma = m_mount.rotationSigma(k);
-    if (!(sigma > 0))
-      continue;
-    linear.residual(row) = -angle[k];
-    linear.byBase.block<1, 3>(row, 3) = byRotation[k];
-    if (linear.doubt.size() > 0)
-      linear.doubt(row, row) = sigma * sigma;
-    ++row;
+    if (sigma > 0) {
+      linear.residual(row) = -angle(k);
+      linear.byBase.block<1, 2>(row, 3) = byRotation.row(k);
+      if (linear.covariance.size() > 0)
+        linear.covariance(row, row) = sigma * sigma;
+      ++row;
+    }
   }
 }
 
@@ -108,12 +106,12 @@ vpRayFit::Minimum vpRayFit::minimise(const vpBasePose &start, int rounds) const
 {
   Minimum minimum;
   minimum.pose = start;
-  for (int round = 0; round < (m_fixedDoubt ? 1 : rounds); ++round) {
+  for (int round = 0; round < (m_fixedCovariance ? 1 : rounds); ++round) {
     const Linear linear = linearise(minimum.pose, true);
     minimum.converged = false;
     if (!linear.inFront)
       break;
-    const Cholesky S(linear.doubt);
+    const Cholesky S(linear.covariance);
     if (S.info() != Eigen::Success || !descend(minimum, S))
       break;
   }
@@ -164,9 +162,10 @@ bool vpRayFit::covariance(const vpBasePose &pose, vpMatrix6d &covariance) const
   const Linear linear = linearise(pose, true);
   if (!linear.inFront)
     return false;
-  const Cholesky S(linear.doubt);
   const Columns J = parameterColumns(linear.byBase);
-  const Columns weighted = S.solve(J);
+  // As many equations as parameters hold exactly, whatever their weights are.
+  const bool exactly = !m_six && J.rows() == J.cols();
+  const Columns weighted = exactly ? J : Columns(Cholesky(linear.covariance).solve(J));
   const Square normal = J.transpose() * weighted;
   // Conditioned apart from the units of the parameters.
   const Parameters scale = normal.diagonal().cwiseSqrt().cwiseInverse();
@@ -179,8 +178,8 @@ bool vpRayFit::covariance(const vpBasePose &pose, vpMatrix6d &covariance) const
   if (m_six)
     covariance = (inverse + inverse.transpose()) / 2;
   else
-    covariance = levelCovariance(inverse * weighted.transpose(), linear.doubt,
-                                 byCameraTilt(linear.byBase, pose, m_mount), tiltDoubt(pose, m_mount));
+    covariance = levelCovariance(inverse * weighted.transpose(), linear.covariance,
+                                 byCameraTilt(linear.byBase, pose, m_mount), tiltCovariance(pose, m_mount));
   return covariance.allFinite();
 }
 

@@ -9,9 +9,7 @@
 #include <limits>
 #include <sstream>
 
-#include <Eigen/LU>
-
-#include "vpLampGeometry.h"
+#include "vpRayFit.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -22,14 +20,6 @@ const double samePlace = 1e-6; // m in the map, and normalised units in the pict
 std::string both(const vpLampSight &first, const vpLampSight &second)
 {
   return "lamps " + first.id + " and " + second.id;
-}
-
-std::string degrees(double angle)
-{
-  std::ostringstream text;
-  text.precision(2);
-  text << angle * 180 / M_PI << " degrees";
-  return text.str();
 }
 
 // Distance in the picture over its standard deviation along the line between the two image points.
@@ -65,35 +55,8 @@ std::string pairProblem(const vpLampSight &first, const vpLampSight &second, con
   return "";
 }
 
-// Covariance of wMb without mountDoubt(). False where the pose is not determined.
-bool pairCovariance(const std::vector<vpLampSight> &lamps, const vpBasePose &pose, const vpMountFrame &mount,
-                    vpMatrix6d &covariance)
-{
-  Eigen::Matrix<double, Eigen::Dynamic, 6> byBase(4, 6);
-  Eigen::VectorXd rays(4);
-  Eigen::Matrix4d S = Eigen::Matrix4d::Zero();
-  for (int k = 0; k < 2; ++k) {
-    const vpPredictedRay predicted = predictRay(lamps[k].position, pose, mount);
-    if (!predicted.inFront)
-      return false;
-    byBase.middleRows<2>(2 * k) = predicted.derivative;
-    rays.segment<2>(2 * k) = predicted.ray;
-    S.block<2, 2>(2 * k, 2 * k) = rayDoubt(lamps[k], predicted);
-  }
-  Eigen::Matrix4d J;
-  J << byBase.leftCols<3>(), byBase.col(5);
-  const Eigen::FullPivLU<Eigen::Matrix4d> lu(J);
-  if (!(lu.rcond() > 1e-12))
-    return false;
-  const Eigen::Matrix2d tilt = tiltDoubt(pose, mount);
-  const Eigen::MatrixXd byTilt = byCameraTilt(byBase, pose, mount);
-  S += byTilt * tilt * byTilt.transpose() + lensDoubt(rays, mount);
-  covariance = levelCovariance(lu.inverse(), S, byTilt, tilt);
-  return covariance.allFinite();
-}
-
 // Refusal where the pair leaves height or heading too uncertain; empty where it does not.
-std::string doubtProblem(const vpLampSight &first, const vpLampSight &second, double height,
+std::string sigmaProblem(const vpLampSight &first, const vpLampSight &second, double height,
                          const vpMatrix6d &covariance, double limit)
 {
   const double sigma = std::sqrt(covariance(2, 2)) / height;
@@ -140,12 +103,12 @@ vpVlpFix vpTwoLampSolver::solve(const vpLampSight &first, const vpLampSight &sec
   }
 
   vpVlpFix fix;
-  if (!pairCovariance(lamps, poses[0], mount, fix.covariance))
+  if (!vpRayFit(lamps, mount, vpRayFit::Kind::level).covariance(poses[0], fix.covariance))
     return refusedFix(both(first, second) + " do not determine the pose");
-  problem = doubtProblem(first, second, heights[0] + pair.rise / 2, fix.covariance, maxRelativeSigma);
+  problem = sigmaProblem(first, second, heights[0] + pair.rise / 2, fix.covariance, maxRelativeSigma);
   if (!problem.empty())
     return refusedFix(problem);
-  fix.covariance += mountDoubt(poses[0], mount);
+  fix.covariance += mountCovariance(poses[0], mount);
   describeFix(fix, lamps, poses[0], rig);
   fix.ambiguous = poses.size() == 2;
   if (fix.ambiguous)
