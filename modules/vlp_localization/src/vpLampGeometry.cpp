@@ -13,7 +13,7 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double leastDepth = 1e-6; // m in front of the camera, and share of a unit ray above the horizon
+const double leastDepth = 1e-6; // m in front of the camera
 
 Eigen::Matrix3d cross(const Eigen::Vector3d &v)
 {
@@ -140,26 +140,22 @@ vpMatrix6d levelCovariance(const Eigen::MatrixXd &K, const Eigen::MatrixXd &S, c
   return covariance;
 }
 
-vpLampPair::vpLampPair(const vpLampSight &first, const vpLampSight &second, const vpMountFrame &mount,
-                       const Eigen::Matrix3d &level)
-    : step(second.position.x() - first.position.x(), second.position.y() - first.position.y()),
-      rise(second.position.z() - first.position.z())
+vpUprightRay::vpUprightRay(const Eigen::Vector2d &ray, const vpMountFrame &mount)
 {
-  const vpLampSight *lamps[2] = {&first, &second};
-  for (int k = 0; k < 2; ++k) {
-    const Eigen::Vector3d up = level * mount.bRc * lamps[k]->ray.homogeneous();
-    aboveHorizon[k] = up.z() > leastDepth * up.norm();
-    if (aboveHorizon[k])
-      ray[k] = {up.x() / up.z(), up.y() / up.z()};
-  }
+  static const double leastRise = 1e-3; // share of a unit ray
+  const Eigen::Vector3d up = mount.bRc * ray.homogeneous();
+  aboveHorizon = up.allFinite() && up.z() > leastRise * up.norm();
+  const Eigen::Vector2d q = up.head<2>() / up.z();
+  value = {q.x(), q.y()};
+  byRay = (mount.bRc.topLeftCorner<2, 2>() - q * mount.bRc.block<1, 2>(2, 0)) / up.z();
 }
 
 std::vector<double> vpLampPair::heights(bool &disagree) const
 {
-  const std::complex<double> apart = ray[1] - ray[0];
+  const std::complex<double> apart = rays[1] - rays[0];
   const double a = std::norm(apart); // a H^2 + 2 b H + c = 0
-  const double b = rise * std::real(std::conj(apart) * ray[1]);
-  const double c = rise * rise * std::norm(ray[1]) - std::norm(step);
+  const double b = rise * std::real(std::conj(apart) * rays[1]);
+  const double c = rise * rise * std::norm(rays[1]) - std::norm(step);
   const double discriminant = b * b - a * c;
   disagree = discriminant < 0;
   std::vector<double> valid;
@@ -171,18 +167,6 @@ std::vector<double> vpLampPair::heights(bool &disagree) const
       valid.push_back(H);
   }
   return valid;
-}
-
-vpBasePose vpLampPair::pose(double H, const vpLampSight &first, const vpMountFrame &mount,
-                            const Eigen::Matrix3d &level) const
-{
-  const double yaw = heading(H);
-  const std::complex<double> camera =
-      std::complex<double>(first.position.x(), first.position.y()) - H * std::polar(1.0, yaw) * ray[0];
-  vpBasePose pose;
-  pose.wRb = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * level;
-  pose.wtb = Eigen::Vector3d(camera.real(), camera.imag(), first.position.z() - H) - pose.wRb * mount.btc;
-  return pose;
 }
 
 std::string sightProblem(const std::vector<vpLampSight> &lamps)

@@ -116,23 +116,20 @@ vpMatrix6d mountCovariance(const vpBasePose &pose, const vpMountFrame &mount);
 vpMatrix6d levelCovariance(const Eigen::MatrixXd &K, const Eigen::MatrixXd &S, const Eigen::MatrixXd &byTilt,
                            const Eigen::Matrix2d &tilt);
 
-//! Two lamps under a known attitude. Rays upright: turned level and scaled to unit height, as x + iy.
+//! A ray turned level and scaled to unit height, x + iy, in a frame that has the base's heading.
+struct vpUprightRay {
+  vpUprightRay(const Eigen::Vector2d &ray, const vpMountFrame &mount);
+
+  bool aboveHorizon; // else the rest is not set
+  std::complex<double> value;
+  Eigen::Matrix2d byRay; // derivative
+};
+
+//! Two lamps seen from a level base.
 struct vpLampPair {
-  std::complex<double> step;             // from the first lamp to the second in the map, m
-  double rise = 0;                       // m, height of the second lamp above the first
-  std::complex<double> ray[2];           // upright
-  bool aboveHorizon[2] = {false, false}; // else that ray is not set
-
-  //! \e level: rotation from b to a level frame that has the base's heading.
-  vpLampPair(const vpLampSight &first, const vpLampSight &second, const vpMountFrame &mount,
-             const Eigen::Matrix3d &level);
-
-  //! Of rays that are upright already.
-  vpLampPair(const std::complex<double> &step, double rise, const std::complex<double> &first,
-             const std::complex<double> &second)
-      : step(step), rise(rise), ray{first, second}, aboveHorizon{true, true}
-  {
-  }
+  std::complex<double> step;    // from the first lamp to the second in the map, m
+  double rise;                  // m, height of the second lamp above the first
+  std::complex<double> rays[2]; // upright
 
   /*!
     Heights H of the first lamp above the camera, m, with both lamps above it: the roots of
@@ -142,11 +139,7 @@ struct vpLampPair {
   std::vector<double> heights(bool &disagree) const;
 
   //! Heading of the base that sees the first lamp at height \e H above the camera, rad.
-  double heading(double H) const { return std::arg(step / (H * (ray[1] - ray[0]) + rise * ray[1])); }
-
-  //! The pose that sees \e first at height \e H above the camera.
-  vpBasePose pose(double H, const vpLampSight &first, const vpMountFrame &mount,
-                  const Eigen::Matrix3d &level) const;
+  double heading(double H) const { return std::arg(step / (H * (rays[1] - rays[0]) + rise * rays[1])); }
 };
 
 //! Why the lamps cannot be used together, in one line: a value that is none, an id given twice. Empty where

@@ -36,20 +36,13 @@ bool turnUpright(const vpLampObservation &observation, const vpVlpRig &rig, doub
                  vpSeenLamp &seen)
 {
   const vpLampSight sight = vpLampSight::from(vpLamp(), observation, rig.camera);
-  const Eigen::Matrix3d R = vpMountFrame(rig).bRc;
-  const Eigen::Vector3d up = R * sight.ray.homogeneous();
-  const double leastRise = 1e-3;
-  if (!up.allFinite() || !(up.z() > leastRise * up.norm())) {
-    return false;
-  }
-  const Eigen::Vector2d q = up.head<2>() / up.z();
-  const Eigen::Matrix2d byRay = (R.topLeftCorner<2, 2>() - q * R.block<1, 2>(2, 0)) / up.z();
-  seen.ray = {q.x(), q.y()};
+  const vpUprightRay upright(sight.ray, vpMountFrame(rig));
+  seen.ray = upright.value;
   // A lean moves all rays alike, which the pose takes up, but for a part that grows with their square.
-  const Eigen::Matrix2d covariance = byRay * sight.covariance * byRay.transpose();
-  const double lean = tiltSigma * q.squaredNorm();
+  const Eigen::Matrix2d covariance = upright.byRay * sight.covariance * upright.byRay.transpose();
+  const double lean = tiltSigma * std::norm(upright.value);
   seen.variance = covariance.selfadjointView<Eigen::Lower>().operatorNorm() + lean * lean;
-  return std::isfinite(seen.variance);
+  return upright.aboveHorizon && std::isfinite(seen.variance);
 }
 
 //! What an observation may be, by its candidates or its id.
@@ -117,20 +110,19 @@ vpPlaceSearch::Bounds underTheLamps(const vpLampMatcher &settings, const vpMount
 //! Where the camera can be, by the last pose of the base.
 vpPlaceSearch::Bounds around(vpPlaceSearch::Bounds bounds, const vpPoseHint &hint, const vpMountFrame &mount)
 {
-  static const double leastReach = 0.05, leastTurn = 0.02; // m, rad
   bounds.anywhere = false;
-  bounds.turn = std::min(M_PI, std::max(leastTurn, hint.turn));
+  bounds.turn = std::min(M_PI, hint.turn);
   bounds.heading = std::atan2(hint.wMb[1][0], hint.wMb[0][0]);
   const Complex arm(mount.btc.x(), mount.btc.y());
   bounds.around = Complex(hint.wMb[0][3], hint.wMb[1][3]) + std::polar(1.0, bounds.heading) * arm;
-  bounds.reach = std::max(leastReach, hint.reach) + std::abs(arm) * std::min(2.0, bounds.turn);
+  bounds.reach = hint.reach + std::abs(arm) * std::min(2.0, bounds.turn);
   return bounds;
 }
 
 bool isPose(const vpPoseHint &hint)
 {
   const double sum = hint.wMb[0][3] + hint.wMb[1][3] + hint.wMb[0][0] + hint.wMb[1][0];
-  return std::isfinite(sum) && hint.reach >= 0 && hint.turn >= 0;
+  return std::isfinite(sum) && hint.reach > 0 && hint.turn > 0;
 }
 
 //! Of places that explain equally many regions about equally well the one near the last pose, or nullptr.

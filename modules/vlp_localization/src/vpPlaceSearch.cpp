@@ -145,7 +145,7 @@ void vpPlaceSearch::tryPair(size_t i, size_t j)
 void vpPlaceSearch::hypothesise(size_t i, size_t first, size_t j, size_t second)
 {
   const vpLampIndex::Lamp &a = m_index.lamp(first), &b = m_index.lamp(second);
-  const vpLampPair pair(b.place - a.place, b.height - a.height, m_seen[i].ray, m_seen[j].ray);
+  const vpLampPair pair{b.place - a.place, b.height - a.height, {m_seen[i].ray, m_seen[j].ray}};
   bool disagree = false;
   for (double H : pair.heights(disagree)) {
     if (m_hypotheses >= m_settings.maxHypotheses) {

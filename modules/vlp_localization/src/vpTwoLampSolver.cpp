@@ -9,6 +9,8 @@
 #include <limits>
 #include <sstream>
 
+#include <Eigen/Geometry>
+
 #include "vpRayFit.h"
 
 BEGIN_VISP_NAMESPACE
@@ -38,10 +40,6 @@ std::string pairProblem(const vpLampSight &first, const vpLampSight &second, con
     return both(first, second) + (std::abs(pair.rise) < samePlace
                                       ? " have the same place in the map"
                                       : " hang one above the other: they do not show the heading");
-  for (int k = 0; k < 2; ++k)
-    if (!pair.aboveHorizon[k])
-      return "lamp " + (k ? second : first).id +
-             ": its ray does not point above the horizon; is the rig's mount rotation right?";
   if ((second.ray - first.ray).norm() < samePlace)
     return both(first, second) + " have the same place in the picture";
   const double sigmas = separation(first, second);
@@ -78,11 +76,18 @@ vpVlpFix vpTwoLampSolver::solve(const vpLampSight &first, const vpLampSight &sec
 {
   const std::vector<vpLampSight> lamps = {first, second};
   const vpMountFrame mount(rig);
-  const Eigen::Matrix3d level = Eigen::Matrix3d::Identity(); // the base stands level
   std::string problem = sightProblem(lamps);
   if (!problem.empty())
     return refusedFix(problem);
-  const vpLampPair pair(first, second, mount, level);
+  const Eigen::Vector3d step = second.position - first.position;
+  vpLampPair pair{{step.x(), step.y()}, step.z(), {}};
+  for (int k = 0; k < 2; ++k) {
+    const vpUprightRay upright(lamps[k].ray, mount);
+    if (!upright.aboveHorizon)
+      return refusedFix("lamp " + lamps[k].id +
+                        ": its ray does not point above the horizon; is the rig's mount rotation right?");
+    pair.rays[k] = upright.value;
+  }
   problem = pairProblem(first, second, pair, minImageSeparation);
   if (!problem.empty())
     return refusedFix(problem);
@@ -95,8 +100,12 @@ vpVlpFix vpTwoLampSolver::solve(const vpLampSight &first, const vpLampSight &sec
     return refusedFix(both(first, second) + ": the camera would have to be above them");
   // The robot drives on z = 0: of two heights the one that puts its base nearer to there.
   std::vector<vpBasePose> poses;
-  for (double H : heights)
-    poses.push_back(pair.pose(H, first, mount, level));
+  for (double H : heights) {
+    const Eigen::AngleAxisd turn(pair.heading(H), Eigen::Vector3d::UnitZ());
+    const std::complex<double> way = H * std::polar(1.0, turn.angle()) * pair.rays[0];
+    const Eigen::Vector3d camera = first.position - Eigen::Vector3d(way.real(), way.imag(), H);
+    poses.push_back({turn.matrix(), camera - turn * mount.btc});
+  }
   if (poses.size() == 2 && std::abs(poses[1].wtb.z()) < std::abs(poses[0].wtb.z())) {
     std::swap(poses[0], poses[1]);
     std::swap(heights[0], heights[1]);
