@@ -4,6 +4,7 @@
  */
 #include "vpLampGeometry.h"
 
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -126,17 +127,15 @@ vpMatrix6d mountCovariance(const vpBasePose &pose, const vpMountFrame &mount)
 vpMatrix6d levelCovariance(const Eigen::MatrixXd &K, const Eigen::MatrixXd &S, const Eigen::MatrixXd &byTilt,
                            const Eigen::Matrix2d &tilt)
 {
+  const std::array<int, 4> own = {0, 1, 2, 5}; // x, y, z, yaw
+  const std::array<int, 2> lean = {3, 4};
   const Eigen::Matrix4d estimated = K * S * K.transpose();
   const Eigen::Matrix<double, 4, 2> withTilt = -K * byTilt * tilt;
-  const int own[4] = {0, 1, 2, 5}; // x, y, z, yaw
-  vpMatrix6d covariance = vpMatrix6d::Zero();
-  covariance.block<2, 2>(3, 3) = tilt;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j)
-      covariance(own[i], own[j]) = (estimated(i, j) + estimated(j, i)) / 2;
-    covariance.block<1, 2>(own[i], 3) = withTilt.row(i);
-    covariance.block<2, 1>(3, own[i]) = withTilt.row(i).transpose();
-  }
+  vpMatrix6d covariance;
+  covariance(own, own) = (estimated + estimated.transpose()) / 2;
+  covariance(own, lean) = withTilt;
+  covariance(lean, own) = withTilt.transpose();
+  covariance(lean, lean) = tilt;
   return covariance;
 }
 

@@ -65,14 +65,6 @@ void addOptions(const vpLampObservation &observation, const vpLampIndex &index, 
   }
 }
 
-vpHomogeneousMatrix baseOf(const Place &place, const vpMountFrame &mount)
-{
-  vpBasePose pose;
-  pose.wRb = Eigen::AngleAxisd(std::arg(place.heading), Eigen::Vector3d::UnitZ());
-  pose.wtb = Eigen::Vector3d(place.camera.real(), place.camera.imag(), place.height) - pose.wRb * mount.btc;
-  return pose.wMb();
-}
-
 std::string shown(const Place &place)
 {
   std::ostringstream text;
@@ -98,15 +90,6 @@ std::string whyNot(const std::vector<Place> &places, size_t seen, bool complete)
          shown(places[0]) + " and " + shown(places[1]);
 }
 
-//! Where the camera can be, of a base that stands on the floor.
-vpPlaceSearch::Bounds underTheLamps(const vpLampMatcher &settings, const vpMountFrame &mount)
-{
-  vpPlaceSearch::Bounds bounds;
-  bounds.height = settings.baseHeight + mount.btc.z();
-  bounds.heightSigma = settings.baseHeightSigma;
-  return bounds;
-}
-
 //! Where the camera can be, by the last pose of the base.
 vpPlaceSearch::Bounds around(vpPlaceSearch::Bounds bounds, const vpPoseHint &hint, const vpMountFrame &mount)
 {
@@ -128,19 +111,17 @@ bool isPose(const vpPoseHint &hint)
 //! Of places that explain equally many regions about equally well the one near the last pose, or nullptr.
 const Place *decidedByHint(const vpPlaceSearch &search, const vpPlaceSearch::Bounds &bounds, double minOdds)
 {
-  const Place *nearest = nullptr;
-  size_t most = 0, near = 0;
+  std::vector<const Place *> near;
+  size_t most = 0;
   for (const Place &place : search.places()) {
     if (place.logEvidence >= search.places()[0].logEvidence - std::log(minOdds)) {
       most = std::max(most, place.count);
       if (bounds.near(place, 0)) {
-        nearest = &place;
-        ++near;
+        near.push_back(&place);
       }
     }
   }
-  const bool decided = near == 1 && nearest->count == most && !search.tooFewOnALine(*nearest);
-  return decided ? nearest : nullptr;
+  return near.size() == 1 && near[0]->count == most && !search.tooFewOnALine(*near[0]) ? near[0] : nullptr;
 }
 } // namespace
 
@@ -200,11 +181,15 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
 
   const vpMountFrame mount(m_rig);
   const double area = m_rig.width * m_rig.height / (m_rig.camera.get_px() * m_rig.camera.get_py());
-  const vpPlaceSearch::Bounds anywhere = underTheLamps(*this, mount);
+  vpPlaceSearch::Bounds anywhere;
+  anywhere.height = baseHeight + mount.btc.z();
+  anywhere.heightSigma = baseHeightSigma;
   const auto accept = [&](const vpPlaceSearch &search, const Place &best) {
     match.outcome = vpLampMatch::Outcome::unique;
     match.odds = search.odds(best);
-    match.wMb = baseOf(best, mount);
+    const Eigen::AngleAxisd turn(std::arg(best.heading), Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d camera(best.camera.real(), best.camera.imag(), best.height);
+    match.wMb = vpBasePose{turn.matrix(), camera - turn * mount.btc}.wMb();
     const Place place = search.withoutUndecided(best);
     for (size_t k = 0; k < seen.size(); ++k) {
       if (place.lamps[k] != vpLampMatch::noLamp) {

@@ -89,10 +89,10 @@ void addIfNew(std::vector<Minimum> &minima, const Minimum &found)
 }
 
 void descend(std::vector<Minimum> &minima, const vpRayFit &fit, const std::vector<vpBasePose> &starts,
-             double maxTilt)
+             double maxTilt, int rounds = 3)
 {
   for (const vpBasePose &start : starts) {
-    const Minimum found = fit.minimise(start);
+    const Minimum found = fit.minimise(start, rounds);
     if (found.converged && found.pose.tilt() <= maxTilt)
       addIfNew(minima, found);
   }
@@ -216,8 +216,10 @@ vpVlpFix vpManyLampSolver::solveFree(const std::vector<vpLampSight> &lamps, cons
 
   const vpMountFrame mount(rig);
   const vpRayFit fit(lamps, mount, vpRayFit::Kind::free);
-  std::vector<Minimum> minima;
-  descend(minima, fit, posesOfThrees(lamps, mount), maxTilt);
+  std::vector<Minimum> found, minima;
+  descend(found, fit, posesOfThrees(lamps, mount), maxTilt, 1);
+  for (const Minimum &minimum : found)
+    descend(minima, fit, {minimum.pose}, maxTilt);
   if (minima.empty())
     return refusedFix("no pose within " + degrees(maxTilt) + " of the vertical sees the " +
                       std::to_string(lamps.size()) + " lamps");

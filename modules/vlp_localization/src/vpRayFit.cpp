@@ -5,9 +5,15 @@
 #include "vpRayFit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 BEGIN_VISP_NAMESPACE
+
+namespace
+{
+const std::array<int, 4> levelParameters = {0, 1, 2, 5}; // x, y, z, yaw
+}
 
 vpRayFit::vpRayFit(const std::vector<vpLampSight> &lamps, const vpMountFrame &mount, Kind kind)
     : m_lamps(lamps), m_mount(mount), m_level(kind == Kind::level), m_six(kind == Kind::free),
@@ -86,19 +92,16 @@ void vpRayFit::addTiltPrior(Linear &linear, const vpBasePose &pose) const
 
 vpRayFit::Columns vpRayFit::parameterColumns(const Rows6 &byBase) const
 {
-  if (m_six)
-    return byBase;
-  Columns columns(byBase.rows(), 4);
-  columns << byBase.leftCols<3>(), byBase.col(5);
-  return columns;
+  return m_six ? Columns(byBase) : Columns(byBase(Eigen::all, levelParameters));
 }
 
 Eigen::Matrix<double, 6, 1> vpRayFit::step(const Parameters &parameters) const
 {
+  Eigen::Matrix<double, 6, 1> step = Eigen::Matrix<double, 6, 1>::Zero();
   if (m_six)
-    return parameters;
-  Eigen::Matrix<double, 6, 1> step;
-  step << parameters.head<3>(), 0, 0, parameters(3);
+    step = parameters;
+  else
+    step(levelParameters) = parameters;
   return step;
 }
 
