@@ -18,7 +18,6 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 const double gate = 4;          // standard deviations, beyond which a lamp is not where it is expected
-const double leastDepth = 0.05; // m from the camera up to a lamp
 const double negligible = 20;   // a place e to this power less likely than the best is forgotten
 const double slackOfPair = 0.3; // m and rad, by which a pair may miss the bounds that all its lamps keep
 const size_t maxPlaces = 2000;  // of a picture that as many explain nobody asks which
@@ -119,7 +118,7 @@ void vpPlaceSearch::tryPair(size_t i, size_t j)
     for (size_t first : m_firsts) {
       const vpLampIndex::Lamp &lamp = m_index.lamp(first);
       const double depth = lamp.height - m_bounds.height;
-      if (depth + heightRange < leastDepth) {
+      if (!(depth + heightRange > 0)) {
         continue; // below the camera
       }
       // |P2 - P1| = |H (q2 - q1) + rise q2|
@@ -427,7 +426,7 @@ double vpPlaceSearch::logEvidence(const Place &place) const
 //! what a place that rests on chance has to be held against.
 double vpPlaceSearch::chance() const
 {
-  const double depth = std::max(leastDepth, 0.5 * (m_index.lowest() + m_index.highest()) - m_bounds.height);
+  const double depth = std::max(0.0, 0.5 * (m_index.lowest() + m_index.highest()) - m_bounds.height);
   const double inView = static_cast<double>(m_index.size()) * square(depth) * m_area / m_index.area(depth);
   return std::log(1 + static_cast<double>(m_seen.size()) * inView / m_settings.strangers);
 }
