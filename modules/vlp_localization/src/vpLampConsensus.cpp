@@ -144,7 +144,7 @@ double vpLampConsensus::misfit(const Group &group) const
 */
 vpLampConsensus::Group vpLampConsensus::withoutMisplaced(const Group &all, const Solve &solver) const
 {
-  static const double contradiction = 1e-6; // probability
+  static const double contradiction = 1e-6, agreement = 0.01; // probabilities
   static const int enough = 4;              // degrees of freedom: of three lamps left, two bear the third out
   const auto likelihood = [](const Group &group) {
     return group.fix.valid ? chiSquareTail(group.fix.chiSquare, group.fix.degreesOfFreedom) : 0;
@@ -155,7 +155,7 @@ vpLampConsensus::Group vpLampConsensus::withoutMisplaced(const Group &all, const
   std::vector<Group> groups = allButOne(all, solver);
   const auto end = std::remove_if(groups.begin(), groups.end(),
                                   [&](const Group &group) { return likelihood(group) <= contradiction; });
-  const bool one = end - groups.begin() == 1 && likelihood(groups.front()) > m_likelihood;
+  const bool one = end - groups.begin() == 1 && likelihood(groups.front()) > agreement;
   return one ? groups.front() : all;
 }
 

@@ -75,26 +75,22 @@ std::vector<vpBasePose> posesOfThrees(const std::vector<vpLampSight> &lamps, con
   return poses;
 }
 
-void addIfNew(std::vector<Minimum> &minima, const Minimum &found)
-{
-  for (Minimum &known : minima) {
-    const double turn = Eigen::AngleAxisd(known.pose.wRb.transpose() * found.pose.wRb).angle();
-    if (turn < 1e-3 && (known.pose.wtb - found.pose.wtb).norm() < 1e-3) {
-      if (found.cost < known.cost)
-        known = found;
-      return;
-    }
-  }
-  minima.push_back(found);
-}
-
+// Adds the minima that a fit finds from there, each once.
 void descend(std::vector<Minimum> &minima, const vpRayFit &fit, const std::vector<vpBasePose> &starts,
              double maxTilt, int rounds = 3)
 {
+  static const double same = 1e-3; // m and rad
   for (const vpBasePose &start : starts) {
     const Minimum found = fit.minimise(start, rounds);
-    if (found.converged && found.pose.tilt() <= maxTilt)
-      addIfNew(minima, found);
+    if (!found.converged || found.pose.tilt() > maxTilt)
+      continue;
+    const auto known = std::find_if(minima.begin(), minima.end(), [&](const Minimum &minimum) {
+      return minimum.pose.stepTo(found.pose).norm() < same;
+    });
+    if (known == minima.end())
+      minima.push_back(found);
+    else if (found.cost < known->cost)
+      *known = found;
   }
 }
 

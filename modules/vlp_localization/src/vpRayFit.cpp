@@ -5,18 +5,13 @@
 #include "vpRayFit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 BEGIN_VISP_NAMESPACE
 
-namespace
-{
-const std::array<int, 4> levelParameters = {0, 1, 2, 5}; // x, y, z, yaw
-}
-
 vpRayFit::vpRayFit(const std::vector<vpLampSight> &lamps, const vpMountFrame &mount, Kind kind)
-    : m_lamps(lamps), m_mount(mount), m_level(kind == Kind::level), m_six(kind == Kind::free),
+    : m_lamps(lamps), m_mount(mount), m_level(kind == Kind::level),
+      m_parameters(kind == Kind::free ? std::vector<int>{0, 1, 2, 3, 4, 5} : std::vector<int>{0, 1, 2, 5}),
       m_fixedCovariance((!m_level || !mount.tiltStated()) && !mount.lensStated())
 {
   for (const vpLampSight &lamp : lamps)
@@ -31,7 +26,7 @@ int vpRayFit::rows() const
 
 int vpRayFit::degreesOfFreedom() const
 {
-  return rows() - (m_six ? 6 : 4);
+  return rows() - static_cast<int>(m_parameters.size());
 }
 
 vpRayFit::Linear vpRayFit::linearise(const vpBasePose &pose, bool withCovariance) const
@@ -90,21 +85,6 @@ void vpRayFit::addTiltPrior(Linear &linear, const vpBasePose &pose) const
   }
 }
 
-vpRayFit::Columns vpRayFit::parameterColumns(const Rows6 &byBase) const
-{
-  return m_six ? Columns(byBase) : Columns(byBase(Eigen::all, levelParameters));
-}
-
-Eigen::Matrix<double, 6, 1> vpRayFit::step(const Parameters &parameters) const
-{
-  Eigen::Matrix<double, 6, 1> step = Eigen::Matrix<double, 6, 1>::Zero();
-  if (m_six)
-    step = parameters;
-  else
-    step(levelParameters) = parameters;
-  return step;
-}
-
 vpRayFit::Minimum vpRayFit::minimise(const vpBasePose &start, int rounds) const
 {
   Minimum minimum;
@@ -127,7 +107,7 @@ bool vpRayFit::descend(Minimum &minimum, const Cholesky &S) const
   Linear linear = linearise(minimum.pose, false);
   for (int iteration = 0; iteration < 100; ++iteration) {
     const Eigen::VectorXd r = S.matrixL().solve(linear.residual); // whitened
-    const Columns J = S.matrixL().solve(parameterColumns(linear.byBase));
+    const Columns J = S.matrixL().solve(Columns(linear.byBase(Eigen::all, m_parameters)));
     const Square normal = J.transpose() * J;
     const Parameters gradient = J.transpose() * r;
     minimum.cost = r.squaredNorm();
@@ -142,7 +122,9 @@ bool vpRayFit::descend(Minimum &minimum, const Cholesky &S) const
       minimum.converged = damping <= 1 && gain < 1e-12 * (1 + minimum.cost);
       if (minimum.converged)
         return true;
-      const vpBasePose trial = minimum.pose.moved(step(change));
+      Eigen::Matrix<double, 6, 1> step = Eigen::Matrix<double, 6, 1>::Zero();
+      step(m_parameters) = change;
+      const vpBasePose trial = minimum.pose.moved(step);
       Linear there = linearise(trial, false);
       better = there.inFront && S.matrixL().solve(there.residual).squaredNorm() < minimum.cost;
       minimum.converged = !better && damping <= 1 && gain < 1e-6 * (1 + minimum.cost); // but for rounding
@@ -165,9 +147,9 @@ bool vpRayFit::covariance(const vpBasePose &pose, vpMatrix6d &covariance) const
   const Linear linear = linearise(pose, true);
   if (!linear.inFront)
     return false;
-  const Columns J = parameterColumns(linear.byBase);
+  const Columns J = linear.byBase(Eigen::all, m_parameters);
   // As many equations as parameters hold exactly, whatever their weights are.
-  const bool exactly = !m_six && J.rows() == J.cols();
+  const bool exactly = m_level && J.rows() == J.cols();
   const Columns weighted = exactly ? J : Columns(Cholesky(linear.covariance).solve(J));
   const Square normal = J.transpose() * weighted;
   // Conditioned apart from the units of the parameters.
@@ -178,7 +160,7 @@ bool vpRayFit::covariance(const vpBasePose &pose, vpMatrix6d &covariance) const
     return false;
   const Square identity = Square::Identity(scaled.rows(), scaled.cols());
   const Square inverse = scale.asDiagonal() * factors.solve(identity) * scale.asDiagonal();
-  if (m_six)
+  if (!m_level)
     covariance = (inverse + inverse.transpose()) / 2;
   else
     covariance = levelCovariance(inverse * weighted.transpose(), linear.covariance,

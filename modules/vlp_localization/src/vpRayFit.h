@@ -71,15 +71,13 @@ private:
   int rows() const;
   Linear linearise(const vpBasePose &pose, bool withCovariance) const;
   void addTiltPrior(Linear &linear, const vpBasePose &pose) const;
-  Columns parameterColumns(const Rows6 &byBase) const;
-  Eigen::Matrix<double, 6, 1> step(const Parameters &parameters) const;
   bool descend(Minimum &minimum, const Cholesky &S) const;
 
   const std::vector<vpLampSight> &m_lamps;
   const vpMountFrame &m_mount;
-  const bool m_level;            // level: roll and pitch belong to S
-  const bool m_six;              // parameters
-  bool m_fixedCovariance = true; // S is the same at all poses
+  const bool m_level;                  // level: roll and pitch belong to S
+  const std::vector<int> m_parameters; // columns of vpPredictedRay
+  bool m_fixedCovariance = true;       // S is the same at all poses
 };
 
 END_VISP_NAMESPACE
