@@ -39,6 +39,10 @@ vpLampConsensus::vpLampConsensus(std::vector<const vpLamp *> lamps, const vpVlpR
     : m_lamps(std::move(lamps)), m_rig(rig), m_observations(observations), m_tolerance(mapTolerance),
       m_likelihood(outlierLikelihood)
 {
+  for (size_t i = 0; i < m_lamps.size(); ++i) {
+    m_sights.push_back(m_lamps[i] == nullptr ? vpLampSight()
+                                             : vpLampSight::from(*m_lamps[i], observations[i], rig.camera));
+  }
 }
 
 void vpLampConsensus::usable(std::vector<vpLampObservation> &observations, std::vector<size_t> &which)
@@ -96,7 +100,7 @@ vpLampConsensus::Group vpLampConsensus::solved(const std::vector<size_t> &which,
 {
   std::vector<vpLampSight> sights;
   for (size_t i : which) {
-    sights.push_back(vpLampSight::from(*m_lamps[i], m_observations[i], m_rig.camera));
+    sights.push_back(m_sights[i]);
   }
   return {which, solver(sights)};
 }
@@ -124,14 +128,13 @@ double vpLampConsensus::misfit(const Group &group) const
   const vpHomogeneousMatrix cMw = group.fix.wMc.inverse();
   double sum = 0;
   for (size_t k = 0; k < group.fix.lamps.size(); ++k) {
-    const size_t i = *std::find_if(group.which.begin(), group.which.end(),
-                                   [&](size_t i) { return m_lamps[i]->id == group.fix.lamps[k]; });
-    const Eigen::Vector3d &place = m_lamps[i]->position;
+    const vpLampSight &sight = m_sights[*std::find_if(group.which.begin(), group.which.end(), [&](size_t i) {
+      return m_sights[i].id == group.fix.lamps[k];
+    })];
+    const Eigen::Vector3d &place = sight.position;
     const double depth = cMw[2][0] * place.x() + cMw[2][1] * place.y() + cMw[2][2] * place.z() + cMw[2][3];
-    const double sigma = std::max(m_lamps[i]->positionSigma, m_tolerance) / depth;
-    const Eigen::Matrix2d covariance =
-        vpLampSight::from(*m_lamps[i], m_observations[i], m_rig.camera).covariance +
-        sigma * sigma * Eigen::Matrix2d::Identity();
+    const double sigma = std::max(sight.positionSigma, m_tolerance) / depth;
+    const Eigen::Matrix2d covariance = sight.covariance + sigma * sigma * Eigen::Matrix2d::Identity();
     sum += group.fix.residuals[k].dot(covariance.inverse() * group.fix.residuals[k]);
   }
   return sum;
@@ -145,7 +148,7 @@ double vpLampConsensus::misfit(const Group &group) const
 vpLampConsensus::Group vpLampConsensus::withoutMisplaced(const Group &all, const Solve &solver) const
 {
   static const double contradiction = 1e-6, agreement = 0.01; // probabilities
-  static const int enough = 4;              // degrees of freedom: of three lamps left, two bear the third out
+  static const int enough = 4; // degrees of freedom: of three lamps left, two bear the third out
   const auto likelihood = [](const Group &group) {
     return group.fix.valid ? chiSquareTail(group.fix.chiSquare, group.fix.degreesOfFreedom) : 0;
   };

@@ -64,6 +64,7 @@ private:
   Group withoutWrongSizes(const Group &all, const Solve &solver) const;
 
   const std::vector<const vpLamp *> m_lamps; // of each observation
+  std::vector<vpLampSight> m_sights;         // likewise, where there is a lamp
   const vpVlpRig &m_rig;
   const std::vector<vpLampObservation> &m_observations;
   double m_tolerance;  // m
