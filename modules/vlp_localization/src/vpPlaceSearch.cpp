@@ -51,7 +51,10 @@ vpPlaceSearch::vpPlaceSearch(const vpLampMatcher &settings, const vpLampIndex &i
                              const std::vector<vpSeenLamp> &seen, double pictureArea, const Bounds &bounds)
     : m_settings(settings), m_index(index), m_seen(seen), m_area(pictureArea), m_bounds(bounds)
 {
-  const std::vector<size_t> order = ordered();
+  std::vector<size_t> order(seen.size()); // regions that few lamps of the map can be come first
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t i, size_t j) { return seen[i].lamps < seen[j].lamps; });
   // A place that all pairs of the first k regions miss has one of them at most.
   for (size_t k = 1; k < order.size() && m_complete && order.size() + 1 >= k + needed(); ++k) {
     for (size_t i = 0; i < k && m_complete; ++i) {
@@ -61,29 +64,6 @@ vpPlaceSearch::vpPlaceSearch(const vpLampMatcher &settings, const vpLampIndex &i
   }
   std::stable_sort(m_places.begin(), m_places.end(),
                    [](const Place &a, const Place &b) { return a.logEvidence > b.logEvidence; });
-}
-
-/*!
-  Regions that few lamps of the map can be come first, and of these such as lie far apart: their pairs are few
-  and fix the pose best.
-*/
-std::vector<size_t> vpPlaceSearch::ordered() const
-{
-  std::vector<size_t> order(m_seen.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::vector<double> apart; // from those that are in order already
-  for (const vpSeenLamp &seen : m_seen) {
-    apart.push_back(1 + std::abs(seen.ray));
-  }
-  const auto merit = [&](size_t i) { return apart[i] / std::sqrt(m_seen[i].lamps); };
-  for (auto next = order.begin(); next != order.end(); ++next) {
-    std::iter_swap(
-        next, std::max_element(next, order.end(), [&](size_t i, size_t j) { return merit(i) < merit(j); }));
-    for (size_t i = 0; i < m_seen.size(); ++i) {
-      apart[i] = std::min(apart[i], std::abs(m_seen[i].ray - m_seen[*next].ray));
-    }
-  }
-  return order;
 }
 
 //! Regions that a place has to explain: two fewer than another one does are never an answer.

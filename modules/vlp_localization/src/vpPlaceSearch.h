@@ -93,7 +93,6 @@ private:
     Eigen::Matrix4d covariance;
   };
 
-  std::vector<size_t> ordered() const;
   size_t needed() const;
   void tryPair(size_t i, size_t j);
   void hypothesise(size_t i, size_t first, size_t j, size_t second);
