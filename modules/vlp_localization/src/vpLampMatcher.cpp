@@ -116,7 +116,7 @@ const Place *decidedByHint(const vpPlaceSearch &search, const vpPlaceSearch::Bou
   for (const Place &place : search.places()) {
     if (place.logEvidence >= search.places()[0].logEvidence - std::log(minOdds)) {
       most = std::max(most, place.count);
-      if (bounds.near(place, 0)) {
+      if (bounds.near(place)) {
         near.push_back(&place);
       }
     }

@@ -17,10 +17,9 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double gate = 4;          // standard deviations, beyond which a lamp is not where it is expected
-const double negligible = 20;   // a place e to this power less likely than the best is forgotten
-const double slackOfPair = 0.3; // m and rad, by which a pair may miss the bounds that all its lamps keep
-const size_t maxPlaces = 2000;  // of a picture that as many explain nobody asks which
+const double gate = 4;         // standard deviations, beyond which a lamp is not where it is expected
+const double negligible = 20;  // a place e to this power less likely than the best is forgotten
+const size_t maxPlaces = 2000; // of a picture that as many explain nobody asks which
 const size_t noLamp = vpLampMatch::noLamp;
 
 double square(double x)
@@ -41,10 +40,10 @@ const vpSeenLamp::Option *vpSeenLamp::option(const vpLampIndex::Lamp &lamp) cons
   return found == options.end() ? nullptr : &*found;
 }
 
-bool vpPlaceSearch::Bounds::near(const Place &place, double slack) const
+bool vpPlaceSearch::Bounds::near(const Place &place) const
 {
-  return std::abs(place.camera - around) <= reach + slack &&
-         std::abs(std::arg(place.heading * std::polar(1.0, -heading))) <= turn + slack;
+  return std::abs(place.camera - around) <= reach &&
+         std::abs(std::arg(place.heading * std::polar(1.0, -heading))) <= turn;
 }
 
 vpPlaceSearch::vpPlaceSearch(const vpLampMatcher &settings, const vpLampIndex &index,
@@ -91,8 +90,10 @@ void vpPlaceSearch::tryPair(size_t i, size_t j)
   }
   const double heightRange = gate * m_bounds.heightSigma;
   const double greatestDepth = m_index.highest() - m_bounds.height + heightRange;
-  const double reach = m_bounds.anywhere ? std::numeric_limits<double>::infinity()
-                                         : m_bounds.reach + slackOfPair + greatestDepth * std::abs(q);
+  const double reach = m_bounds.anywhere
+                           ? std::numeric_limits<double>::infinity()
+                           : m_bounds.reach + greatestDepth * std::abs(q) +
+                                 gate * std::sqrt(variance(i, m_index.greatestSigma(), greatestDepth));
   for (const vpSeenLamp::Option &option : m_seen[i].options) {
     within(option, m_bounds.around, reach, m_firsts);
     for (size_t first : m_firsts) {
@@ -145,13 +146,6 @@ void vpPlaceSearch::hypothesise(size_t i, size_t first, size_t j, size_t second)
 //! Finds the other lamps of a place, fits it to all of them, and keeps it where it may matter.
 void vpPlaceSearch::settle(Place &place)
 {
-  const auto inBounds = [&](double slack) {
-    return std::abs(place.height - m_bounds.height) <= gate * m_bounds.heightSigma + slack &&
-           (m_bounds.anywhere || m_bounds.near(place, slack));
-  };
-  if (!inBounds(slackOfPair)) {
-    return;
-  }
   static const int rounds = 3; // the pair alone may expect lamps too far away, or too near
   for (int round = 0; round < rounds; ++round) {
     if (!gather(place)) {
@@ -162,7 +156,8 @@ void vpPlaceSearch::settle(Place &place)
     place.height += fit.step.z();
     place.heading *= std::polar(1.0, fit.step.w());
   }
-  if (inBounds(0)) {
+  if (std::abs(place.height - m_bounds.height) <= gate * m_bounds.heightSigma &&
+      (m_bounds.anywhere || m_bounds.near(place))) {
     m_most = std::max(m_most, place.count);
     place.logEvidence = logEvidence(place);
     keep(place);

@@ -63,8 +63,8 @@ public:
     double heading = 0;     // rad
     double turn = M_PI;     // rad, either way
 
-    //! Whether a place is near the last pose. \param slack m and rad, by which it may miss the bounds.
-    bool near(const Place &place, double slack) const;
+    //! Whether a place is near the last pose.
+    bool near(const Place &place) const;
   };
 
   //! Searches. \param pictureArea In units of upright rays.
