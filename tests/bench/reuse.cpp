@@ -122,8 +122,7 @@ void coldStarts(const Case &each, size_t lamps)
   Ceiling ceiling(reuseScene::mapOf(positions, each.laid ? laid.identifiers : atRandom(lamps)), each.errors,
                   11);
   const vpLampMatcher matcher(reuseScene::rig(), ceiling.map);
-  const vpLampMatcher scanning(reuseScene::rig(), ceiling.map, vpLampMatcher::Search::scan);
-  Score cold, warm, carried, scan;
+  Score cold, warm, carried;
   double inView = 0;
   for (int place = 0; place < places;) {
     const View view = ceiling.look(ceiling.randomBase());
@@ -135,9 +134,6 @@ void coldStarts(const Case &each, size_t lamps)
     cold.match(matcher, view, std::nullopt);
     warm.match(matcher, view, hintFor(ceiling, view.wMb));
     carried.match(matcher, view, hintFor(ceiling, ceiling.randomBase()));
-    if (place % 10 == 0) {
-      scan.match(scanning, view, std::nullopt);
-    }
   }
   std::cout << std::fixed << std::setprecision(1) << "| " << each.name << " | " << lamps << " | " << inView
             << " | ";
@@ -148,8 +144,7 @@ void coldStarts(const Case &each, size_t lamps)
   }
   std::cout << cold.shares() << " | " << warm.shares() << " | " << carried.shares() << std::setprecision(3)
             << " | " << cold.times.mean() << " / " << cold.times.share95() << " | " << warm.times.mean()
-            << " / " << warm.times.share95() << " | " << scan.times.mean() << " | " << std::setprecision(1)
-            << scan.times.mean() / cold.times.mean() << " |" << std::endl;
+            << " / " << warm.times.share95() << " |" << std::endl;
 }
 
 //! \e inView lamps and a reflection of one of them.
@@ -198,8 +193,8 @@ int main(int argc, char **argv)
          "Shares: right, %, refused, %, and the number of wrong ones. Times: milliseconds of one core, mean "
          "and 95 %.\n\n"
       << "| ceiling | lamps | in view | sets of three repeated, layout | cold start | from the last pose | "
-         "carried elsewhere since | cold start, ms | from the last pose, ms | scan, ms | scan / index |\n"
-      << "|---|---|---|---|---|---|---|---|---|---|---|" << std::endl;
+         "carried elsewhere since | cold start, ms | from the last pose, ms |\n"
+      << "|---|---|---|---|---|---|---|---|---|" << std::endl;
   Errors fine, coarse;
   fine.missing = fine.reflections = 0.01;
   coarse.missing = coarse.reflections = 0.05;

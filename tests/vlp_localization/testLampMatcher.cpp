@@ -135,23 +135,6 @@ TEST(LampMatcher, IsNeverWrongUnderIdentifiersLaidAtRandomAndCoarseErrors)
   EXPECT_GT(tally.unique, tally.views / 3);
 }
 
-TEST(LampMatcher, GivesTheSameByIndexAndByScan)
-{
-  Errors errors;
-  errors.missing = errors.reflections = 0.1;
-  Ceiling ceiling(laidMap(225, 2, 0.3, 10), errors, 29);
-  const vpLampMatcher matcher = matcherOf(ceiling);
-  const vpLampMatcher scanning(reuseScene::rig(), ceiling.map, vpLampMatcher::Search::scan);
-  for (int k = 0; k < 100; ++k) {
-    const View view = ceiling.look(ceiling.randomBase());
-    const vpLampMatch byIndex = matcher.match(view.observations, view.all());
-    const vpLampMatch byScan = scanning.match(view.observations, view.all());
-    EXPECT_EQ(byIndex.outcome, byScan.outcome);
-    EXPECT_EQ(byIndex.lamps, byScan.lamps);
-    EXPECT_EQ(byIndex.refusal, byScan.refusal);
-  }
-}
-
 TEST(LampMatcher, SaysWhereTheRobotIs)
 {
   Ceiling ceiling(laidMap(100, 1.5, 0.2, 20), Errors(), 31);

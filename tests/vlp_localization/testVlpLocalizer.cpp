@@ -309,6 +309,18 @@ TEST(VlpLocalizer, NoLampOrOneLampIsARefusalInOneLine)
   EXPECT_TRUE(nothing.observations.empty());
 }
 
+TEST(VlpLocalizer, LampsThatTheMapDoesNotHaveDoNotCount)
+{
+  const Room room;
+  std::vector<vpLampObservation> observations = room.locate().observations;
+  observations[0].id = "nobody";
+  vpVlpLocalizer localizer(room.rig(), room.map);
+  const vpVlpFix fix = localizer.locate(12.5, observations).fix;
+  ASSERT_TRUE(fix.valid) << fix.refusal;
+  EXPECT_EQ(fix.lamps.size(), 3u);
+  EXPECT_LT(room.error(fix), 0.001);
+}
+
 TEST(VlpLocalizer, SteadyLampsAreSeenAndDoNotCount)
 {
   Room room;

@@ -6,88 +6,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include <Eigen/LU>
-#include <visp3/core/vpMeterPixelConversion.h>
+#include <unsupported/Eigen/SpecialFunctions>
 #include <visp3/vlp_core/vpNumberText.h>
+
+#include "vpLampFrame.h"
+#include "vpLampPicture.h"
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-
-//! Probability that a chi-square of \e degrees of freedom exceeds \e x: Q(degrees / 2, x / 2) by its
-//! recurrence.
+//! Probability that a chi-square of \e degrees of freedom exceeds \e x.
 double chiSquareTail(double x, int degrees)
 {
-  if (degrees <= 0) {
-    return 1;
-  }
-  const double h = 0.5 * x;
-  const bool odd = degrees % 2 == 1;
-  double tail = odd ? std::erfc(std::sqrt(h)) : std::exp(-h);
-  double term = odd ? 2 * std::sqrt(h / M_PI) * std::exp(-h) : h * std::exp(-h);
-  for (int k = odd ? 3 : 4; k <= degrees; k += 2) {
-    tail += term;
-    term *= h / (0.5 * k);
-  }
-  return tail;
+  return degrees > 0 ? Eigen::numext::igammac(0.5 * degrees, 0.5 * x) : 1;
 }
 
-std::string joined(const std::vector<std::string> &ids)
+bool has(const vpVlpFix &fix, const std::string &id)
 {
-  std::string text;
-  for (const std::string &id : ids) {
-    text += (text.empty() ? "" : ", ") + id;
-  }
-  return text;
+  return std::find(fix.lamps.begin(), fix.lamps.end(), id) != fix.lamps.end();
 }
-
-Eigen::Vector3d inCamera(const Eigen::Vector3d &p, const vpHomogeneousMatrix &cMw)
-{
-  Eigen::Vector3d c;
-  for (unsigned int i = 0; i < 3; ++i) {
-    c(i) = cMw[i][0] * p.x() + cMw[i][1] * p.y() + cMw[i][2] * p.z() + cMw[i][3];
-  }
-  return c;
-}
-
-//! Along the camera's axis, m.
-double depthOf(const Eigen::Vector3d &p, const vpHomogeneousMatrix &cMw)
-{
-  return inCamera(p, cMw).z();
-}
-
-/*!
-  Mean diameter, px, that the picture of a lamp has from there: of the ellipse that the lens, near its middle,
-  makes of a circle of its size, half the sum of the singular values of that map. NaN behind the camera.
-*/
-double diameterOf(const vpLamp &lamp, const vpHomogeneousMatrix &cMw, const vpCameraParameters &camera)
-{
-  Eigen::Matrix2d across; // px, of the lamp along x and y of the map
-  for (int axis = 0; axis < 2; ++axis) {
-    Eigen::Vector2d ends[2];
-    for (int k = 0; k < 2; ++k) {
-      const Eigen::Vector3d c =
-          inCamera(lamp.position + (k - 0.5) * lamp.size * Eigen::Vector3d::Unit(axis), cMw);
-      if (!(c.z() > 0)) {
-        return NAN;
-      }
-      vpMeterPixelConversion::convertPoint(camera, c.x() / c.z(), c.y() / c.z(), ends[k].x(), ends[k].y());
-    }
-    across.col(axis) = ends[1] - ends[0];
-  }
-  return 0.5 * std::sqrt(across.squaredNorm() + 2 * std::abs(across.determinant()));
-}
-
-vpVlpFix refusal(const std::string &reason)
-{
-  vpVlpFix fix;
-  fix.refusal = reason;
-  return fix;
-}
-
 } // namespace
 
 vpLampConsensus::vpLampConsensus(std::vector<const vpLamp *> lamps, const vpVlpRig &rig,
@@ -96,6 +39,10 @@ vpLampConsensus::vpLampConsensus(std::vector<const vpLamp *> lamps, const vpVlpR
     : m_lamps(std::move(lamps)), m_rig(rig), m_observations(observations), m_tolerance(mapTolerance),
       m_likelihood(outlierLikelihood)
 {
+  for (size_t i = 0; i < m_lamps.size(); ++i) {
+    m_sights.push_back(m_lamps[i] == nullptr ? vpLampSight()
+                                             : vpLampSight::from(*m_lamps[i], observations[i], rig.camera));
+  }
 }
 
 void vpLampConsensus::usable(std::vector<vpLampObservation> &observations, std::vector<size_t> &which)
@@ -119,179 +66,135 @@ void vpLampConsensus::usable(std::vector<vpLampObservation> &observations, std::
   }
 }
 
-std::vector<vpLampSight> vpLampConsensus::sights(const std::vector<size_t> &which) const
-{
-  std::vector<vpLampSight> lamps;
-  for (size_t i : which) {
-    lamps.push_back(vpLampSight::from(*m_lamps[i], m_observations[i], m_rig.camera));
-  }
-  return lamps;
-}
-
-/*!
-  Chi-square of a fix's residuals under the rays' doubt and the map's tolerance. The fix minimises another
-  sum, so this is no less than the least there is.
-*/
-double vpLampConsensus::misfit(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const
-{
-  const vpHomogeneousMatrix cMw = fix.wMc.inverse();
-  double sum = 0;
-  for (size_t i = 0; i < fix.lamps.size(); ++i) {
-    const auto lamp = std::find_if(lamps.begin(), lamps.end(),
-                                   [&](const vpLampSight &sight) { return sight.id == fix.lamps[i]; });
-    const double sigma = std::max(lamp->positionSigma, m_tolerance) / depthOf(lamp->position, cMw);
-    const Eigen::Matrix2d doubt = lamp->covariance + sigma * sigma * Eigen::Matrix2d::Identity();
-    sum += fix.residuals[i].dot(doubt.inverse() * fix.residuals[i]);
-  }
-  return sum;
-}
-
-bool vpLampConsensus::agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const
-{
-  return fix.valid && chiSquareTail(misfit(fix, lamps), fix.degreesOfFreedom) > m_likelihood;
-}
-
-/*!
-  Lamps of a fix that look larger or smaller from there than the map's size makes them. \param remark Says so
-  of the first one.
-*/
-std::vector<std::string> vpLampConsensus::wrongSizes(const vpVlpFix &fix, const std::vector<size_t> &usable,
-                                                     std::string &remark) const
-{
-  // The map may mean the housing, and the picture shows the light.
-  static const double tolerance = 0.3; // of the size
-  static const double coarse = 3;      // px
-  const vpHomogeneousMatrix cMw = fix.wMc.inverse();
-  std::vector<std::string> wrong;
-  for (size_t i : usable) {
-    const vpLampObservation &seen = m_observations[i];
-    const vpLamp *lamp = m_lamps[i];
-    if (lamp == nullptr || !std::isfinite(lamp->size) || seen.cut ||
-        std::find(fix.lamps.begin(), fix.lamps.end(), seen.id) == fix.lamps.end()) {
-      continue;
-    }
-    const double expected = diameterOf(*lamp, cMw, m_rig.camera), found = seen.outline.diameter();
-    if (!(std::abs(found - expected) <= tolerance * expected + coarse)) {
-      if (wrong.empty()) {
-        remark = "lamp " + seen.id + " looks " + vpNumberText(std::round(found)) + " px large, expected " +
-                 vpNumberText(std::round(expected)) + " px by its size in the map";
-      }
-      wrong.push_back(seen.id);
-    }
-  }
-  return wrong;
-}
-
-/*!
-  A fix without lamps of wrong size: what was taken for such a lamp may be something else, or its outline be
-  spoilt. Where these are half of all lamps or more, the place may be what is wrong.
-*/
-vpVlpFix vpLampConsensus::withoutWrongSizes(const vpVlpFix &all, const std::vector<size_t> &usable,
-                                            std::vector<vpLampSight> &lamps, const Solve &solver) const
-{
-  const size_t most = (lamps.size() - 1) / 2;
-  size_t dropped = 0;
-  vpVlpFix fix = all;
-  std::string remark;
-  for (std::vector<std::string> wrong; fix.valid && !(wrong = wrongSizes(fix, usable, remark)).empty();) {
-    dropped += wrong.size();
-    if (dropped > most) {
-      return refusal(remark);
-    }
-    lamps.erase(std::remove_if(lamps.begin(), lamps.end(),
-                               [&](const vpLampSight &lamp) {
-                                 return std::find(wrong.begin(), wrong.end(), lamp.id) != wrong.end();
-                               }),
-                lamps.end());
-    fix = solver(lamps);
-  }
-  return fix;
-}
-
 vpVlpFix vpLampConsensus::solve(const std::vector<size_t> &usable, const Solve &solver) const
 {
-  static const size_t fewest = 2;
-  if (usable.size() < fewest) {
-    return refusal(usable.empty() ? "no lamp of the map seen"
-                                  : "one lamp of the map seen, two are needed for a position");
+  std::vector<size_t> known;
+  std::copy_if(usable.begin(), usable.end(), std::back_inserter(known),
+               [this](size_t i) { return m_lamps[i] != nullptr; });
+  if (known.size() < poseLamps) {
+    return refusedFix(tooFewLamps(known.size()));
   }
-  std::vector<vpLampSight> lamps = sights(usable);
-  vpVlpFix fix = solver(lamps);
+  Group group = solved(known, solver);
   // One of three could be any of them, and some few of many always agree by chance.
-  const size_t fewestLeft = usable.size() - usable.size() / 4;
-  while (fix.valid && !agree(fix, lamps)) {
-    if (lamps.size() <= fewestLeft) {
-      return refusal("lamps " + joined(fix.lamps) + " do not agree on one place");
+  const size_t fewestLeft = known.size() - known.size() / 4;
+  while (group.fix.valid && !(chiSquareTail(misfit(group), group.fix.degreesOfFreedom) > m_likelihood)) {
+    if (group.which.size() <= fewestLeft) {
+      std::string ids;
+      for (const std::string &id : group.fix.lamps) {
+        ids += (ids.empty() ? "" : ", ") + id;
+      }
+      return refusedFix("lamps " + ids + " do not agree on one place");
     }
-    fix = withoutWorst(lamps, solver);
+    const std::vector<Group> others = allButOne(group, solver);
+    group = *std::min_element(others.begin(), others.end(),
+                              [this](const Group &a, const Group &b) { return misfit(a) < misfit(b); });
   }
-  if (fix.valid) {
-    fix = withoutMisplaced(fix, lamps, solver);
-    fix = withoutWrongSizes(fix, usable, lamps, solver);
-  }
+  vpVlpFix fix = withoutWrongSizes(withoutMisplaced(group, solver), solver).fix;
   if (fix.valid && fix.degreesOfFreedom > 0) {
     fix.covariance *= std::max(1.0, fix.chiSquare / fix.degreesOfFreedom);
   }
   return fix;
 }
 
+vpLampConsensus::Group vpLampConsensus::solved(const std::vector<size_t> &which, const Solve &solver) const
+{
+  std::vector<vpLampSight> sights;
+  for (size_t i : which) {
+    sights.push_back(m_sights[i]);
+  }
+  return {which, solver(sights)};
+}
+
+std::vector<vpLampConsensus::Group> vpLampConsensus::allButOne(const Group &all, const Solve &solver) const
+{
+  std::vector<Group> groups;
+  for (size_t left = 0; left < all.which.size(); ++left) {
+    std::vector<size_t> others = all.which;
+    others.erase(others.begin() + static_cast<long>(left));
+    groups.push_back(solved(others, solver));
+  }
+  return groups;
+}
+
 /*!
-  A fix without the one lamp that is elsewhere than the map says, where that is as good as certain: under what
-  map and pictures say of themselves, all lamps contradict each other, without that lamp they do not, and
-  without any other they still do.
+  Chi-square of a fix's residuals under the covariances of rays and the map's tolerance; infinite where there
+  is no fix. The fix minimises another sum, so this is no less than the least there is.
 */
-vpVlpFix vpLampConsensus::withoutMisplaced(const vpVlpFix &all, std::vector<vpLampSight> &lamps,
-                                           const Solve &solver) const
+double vpLampConsensus::misfit(const Group &group) const
+{
+  if (!group.fix.valid) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const vpHomogeneousMatrix cMw = group.fix.wMc.inverse();
+  double sum = 0;
+  for (size_t k = 0; k < group.fix.lamps.size(); ++k) {
+    const vpLampSight &sight = m_sights[*std::find_if(group.which.begin(), group.which.end(), [&](size_t i) {
+      return m_sights[i].id == group.fix.lamps[k];
+    })];
+    const Eigen::Vector3d &place = sight.position;
+    const double depth = cMw[2][0] * place.x() + cMw[2][1] * place.y() + cMw[2][2] * place.z() + cMw[2][3];
+    const double sigma = std::max(sight.positionSigma, m_tolerance) / depth;
+    const Eigen::Matrix2d covariance = sight.covariance + sigma * sigma * Eigen::Matrix2d::Identity();
+    sum += group.fix.residuals[k].dot(covariance.inverse() * group.fix.residuals[k]);
+  }
+  return sum;
+}
+
+/*!
+  Without the one lamp that is elsewhere than the map says, where that is as good as certain: under what map
+  and pictures say of themselves, all lamps contradict each other, without that lamp they do not, and without
+  any other they still do.
+*/
+vpLampConsensus::Group vpLampConsensus::withoutMisplaced(const Group &all, const Solve &solver) const
 {
   static const double contradiction = 1e-6, agreement = 0.01; // probabilities
   static const int enough = 4; // degrees of freedom: of three lamps left, two bear the third out
-  auto likelihood = [](const vpVlpFix &fix) {
-    return fix.valid ? chiSquareTail(fix.chiSquare, fix.degreesOfFreedom) : 0;
+  const auto likelihood = [](const Group &group) {
+    return group.fix.valid ? chiSquareTail(group.fix.chiSquare, group.fix.degreesOfFreedom) : 0;
   };
-  if (all.degreesOfFreedom < enough || likelihood(all) > contradiction) {
+  if (!all.fix.valid || all.fix.degreesOfFreedom < enough || likelihood(all) > contradiction) {
     return all;
   }
-  vpVlpFix best = all;
-  std::vector<vpLampSight> kept = lamps;
-  for (size_t left = 0; left < lamps.size(); ++left) {
-    std::vector<vpLampSight> others = lamps;
-    others.erase(others.begin() + static_cast<long>(left));
-    const vpVlpFix fix = solver(others);
-    const double likely = likelihood(fix);
-    if (likely > contradiction && likelihood(best) > contradiction) {
-      return all; // it may be one or the other
-    }
-    if (likely > agreement) {
-      best = fix;
-      kept = others;
-    }
-  }
-  lamps = kept;
-  return best;
+  std::vector<Group> groups = allButOne(all, solver);
+  const auto end = std::remove_if(groups.begin(), groups.end(),
+                                  [&](const Group &group) { return likelihood(group) <= contradiction; });
+  const bool one = end - groups.begin() == 1 && likelihood(groups.front()) > agreement;
+  return one ? groups.front() : all;
 }
 
-//! Drops the lamp that the others agree best without.
-vpVlpFix vpLampConsensus::withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const
+/*!
+  Without lamps that look larger or smaller than the map's size makes them: what was taken for such a lamp may
+  be something else, or its outline be spoilt. Where these are half of all lamps or more, the place may be
+  what is wrong.
+*/
+vpLampConsensus::Group vpLampConsensus::withoutWrongSizes(const Group &all, const Solve &solver) const
 {
-  std::vector<vpLampSight> kept = lamps;
-  vpVlpFix best = refusal("no lamps agree on one place");
-  double least = 0;
-  for (size_t left = 0; left < lamps.size(); ++left) {
-    std::vector<vpLampSight> others = lamps;
-    others.erase(others.begin() + static_cast<long>(left));
-    vpVlpFix fix = solver(others);
-    if (!fix.valid) {
-      continue;
+  static const double tolerance =
+      0.3;                        // of the size: the map may mean the housing, the picture shows the light
+  static const double coarse = 3; // px
+  Group group = all;
+  while (group.fix.valid) {
+    const vpBasePose wMb = vpBasePose::of(group.fix.wMb);
+    std::string remark; // of the first one
+    std::vector<size_t> right;
+    for (size_t i : group.which) {
+      const vpLampObservation &seen = m_observations[i];
+      const double expected = vpLampPicture(*m_lamps[i], wMb, m_rig).diameter(),
+                   found = seen.outline.diameter();
+      if (!std::isfinite(m_lamps[i]->size) || seen.cut || !has(group.fix, seen.id) ||
+          std::abs(found - expected) <= tolerance * expected + coarse) {
+        right.push_back(i);
+      } else if (remark.empty()) {
+        remark = "lamp " + seen.id + " looks " + vpNumberText(std::round(found)) + " px large, expected " +
+                 vpNumberText(std::round(expected)) + " px by its size in the map";
+      }
     }
-    const double chiSquare = misfit(fix, others);
-    if (!best.valid || chiSquare < least) {
-      best = fix;
-      least = chiSquare;
-      kept = others;
+    if (right.size() == group.which.size()) {
+      break;
     }
+    group = 2 * right.size() > all.which.size() ? solved(right, solver) : Group{right, refusedFix(remark)};
   }
-  lamps = kept;
-  return best;
+  return group;
 }
 
 void vpLampConsensus::explain(const vpVlpFix &fix, const std::vector<size_t> &usable,
@@ -299,8 +202,7 @@ void vpLampConsensus::explain(const vpVlpFix &fix, const std::vector<size_t> &us
 {
   for (size_t i : usable) {
     vpLampObservation &lamp = observations[i];
-    const bool member = std::find(fix.lamps.begin(), fix.lamps.end(), lamp.id) != fix.lamps.end();
-    lamp.accepted = fix.valid && member;
+    lamp.accepted = fix.valid && has(fix, lamp.id);
     if (!lamp.accepted) {
       lamp.remark = !fix.valid              ? fix.refusal
                     : fix.lamps.size() == 2 ? "not of the pair with the best geometry"

@@ -37,12 +37,12 @@ public:
   static void usable(std::vector<vpLampObservation> &observations, std::vector<size_t> &which);
 
   /*!
-    The pose of all usable lamps where their residuals are likely under all stated doubts and `mapTolerance`.
-    Otherwise that of those that do agree, up to a quarter of the lamps left out one by one; otherwise a
-    refusal. One that contradicts all others under the stated doubts alone, which agree without it, is left
-    out within `mapTolerance`, too. Lamps that look much larger or smaller than the map says are left out too,
-    as long as more do not. A fix whose lamps disagree beyond the stated doubts has its covariance scaled up
-    to what they show (Birge's ratio).
+    The pose of all usable lamps where their residuals are likely under all stated covariances and
+    `mapTolerance`. Otherwise that of those that do agree, up to a quarter of the lamps left out one by one;
+    otherwise a refusal. One that contradicts all others under the stated covariances alone, which agree
+    without it, is left out within `mapTolerance`, too. Lamps that look much larger or smaller than the map
+    says are left out too, as long as more do not. A fix whose lamps disagree beyond these has its covariance
+    scaled up to what they show (Birge's ratio).
   */
   vpVlpFix solve(const std::vector<size_t> &usable, const Solve &solver) const;
 
@@ -51,17 +51,20 @@ public:
                       std::vector<vpLampObservation> &observations);
 
 private:
-  std::vector<vpLampSight> sights(const std::vector<size_t> &which) const;
-  double misfit(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
-  bool agree(const vpVlpFix &fix, const std::vector<vpLampSight> &lamps) const;
-  vpVlpFix withoutMisplaced(const vpVlpFix &all, std::vector<vpLampSight> &lamps, const Solve &solver) const;
-  vpVlpFix withoutWorst(std::vector<vpLampSight> &lamps, const Solve &solver) const;
-  std::vector<std::string> wrongSizes(const vpVlpFix &fix, const std::vector<size_t> &usable,
-                                      std::string &remark) const;
-  vpVlpFix withoutWrongSizes(const vpVlpFix &fix, const std::vector<size_t> &usable,
-                             std::vector<vpLampSight> &lamps, const Solve &solver) const;
+  //! Some of the observations, by their indices, and their pose.
+  struct Group {
+    std::vector<size_t> which;
+    vpVlpFix fix;
+  };
+
+  Group solved(const std::vector<size_t> &which, const Solve &solver) const;
+  std::vector<Group> allButOne(const Group &all, const Solve &solver) const;
+  double misfit(const Group &group) const;
+  Group withoutMisplaced(const Group &all, const Solve &solver) const;
+  Group withoutWrongSizes(const Group &all, const Solve &solver) const;
 
   const std::vector<const vpLamp *> m_lamps; // of each observation
+  std::vector<vpLampSight> m_sights;         // likewise, where there is a lamp
   const vpVlpRig &m_rig;
   const std::vector<vpLampObservation> &m_observations;
   double m_tolerance;  // m

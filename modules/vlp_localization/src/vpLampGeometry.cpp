@@ -4,7 +4,9 @@
  */
 #include "vpLampGeometry.h"
 
+#include <array>
 #include <cmath>
+#include <sstream>
 
 #include <Eigen/Geometry>
 
@@ -12,7 +14,7 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double leastDepth = 1e-6; // m in front of the camera, and share of a unit ray above the horizon
+const double leastDepth = 1e-6; // m in front of the camera
 
 Eigen::Matrix3d cross(const Eigen::Vector3d &v)
 {
@@ -21,14 +23,7 @@ Eigen::Matrix3d cross(const Eigen::Vector3d &v)
   return m;
 }
 
-void fromVisp(const vpHomogeneousMatrix &M, Eigen::Matrix3d &R, Eigen::Vector3d &t)
-{
-  for (unsigned int i = 0; i < 3; ++i) {
-    for (unsigned int j = 0; j < 3; ++j)
-      R(i, j) = M[i][j];
-    t(i) = M[i][3];
-  }
-}
+using vpMatrixOfVisp = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 } // namespace
 
 double vpBasePose::tilt() const
@@ -57,27 +52,22 @@ Eigen::Matrix<double, 6, 1> vpBasePose::stepTo(const vpBasePose &pose) const
 vpHomogeneousMatrix vpBasePose::wMb() const
 {
   vpHomogeneousMatrix M;
-  for (unsigned int i = 0; i < 3; ++i) {
-    for (unsigned int j = 0; j < 3; ++j)
-      M[i][j] = wRb(i, j);
-    M[i][3] = wtb(i);
-  }
+  Eigen::Map<vpMatrixOfVisp>(M.data).topRows<3>() << wRb, wtb;
   return M;
 }
 
 vpBasePose vpBasePose::of(const vpHomogeneousMatrix &wMb)
 {
-  vpBasePose pose;
-  fromVisp(wMb, pose.wRb, pose.wtb);
-  return pose;
+  const Eigen::Map<const vpMatrixOfVisp> M(wMb.data);
+  return {M.topLeftCorner<3, 3>(), M.topRightCorner<3, 1>()};
 }
 
 vpMountFrame::vpMountFrame(const vpVlpRig &rig)
-    : translationSigma(rig.translationSigma), rotationSigma(rig.rotationSigma),
+    : bRc(vpBasePose::of(rig.bMc).wRb), btc(vpBasePose::of(rig.bMc).wtb),
+      translationSigma(rig.translationSigma), rotationSigma(rig.rotationSigma),
       principalPointSigma(rig.principalPointSigma.value_or(0) / rig.camera.get_px()),
       focalLengthSigma(rig.focalLengthSigma.value_or(0))
 {
-  fromVisp(rig.bMc, bRc, btc);
 }
 
 vpPredictedRay predictRay(const Eigen::Vector3d &lamp, const vpBasePose &pose, const vpMountFrame &mount)
@@ -97,13 +87,13 @@ vpPredictedRay predictRay(const Eigen::Vector3d &lamp, const vpBasePose &pose, c
   return predicted;
 }
 
-Eigen::Matrix2d rayDoubt(const vpLampSight &lamp, const vpPredictedRay &predicted)
+Eigen::Matrix2d rayCovariance(const vpLampSight &lamp, const vpPredictedRay &predicted)
 {
   const Eigen::Matrix<double, 2, 3> byPosition = -predicted.derivative.leftCols<3>();
   return lamp.covariance + lamp.positionSigma * lamp.positionSigma * byPosition * byPosition.transpose();
 }
 
-Eigen::Matrix2d tiltDoubt(const vpBasePose &pose, const vpMountFrame &mount)
+Eigen::Matrix2d tiltCovariance(const vpBasePose &pose, const vpMountFrame &mount)
 {
   const Eigen::Matrix2d turn = pose.wRb.topLeftCorner<2, 2>();
   return turn * mount.rotationSigma.head<2>().cwiseAbs2().asDiagonal() * turn.transpose();
@@ -116,17 +106,14 @@ Eigen::MatrixXd byCameraTilt(const Eigen::Matrix<double, Eigen::Dynamic, 6> &byB
   return byBase.middleCols<2>(3) + byBase.leftCols<3>() * cross(pose.wRb * mount.btc).leftCols<2>();
 }
 
-Eigen::MatrixXd lensDoubt(const Eigen::VectorXd &rays, const vpMountFrame &mount)
+Eigen::MatrixXd lensCovariance(const Eigen::VectorXd &rays, const vpMountFrame &mount)
 {
-  Eigen::MatrixXd byPoint(rays.size(), 2);
-  for (Eigen::Index row = 0; row < rays.size(); row += 2) {
-    byPoint.middleRows<2>(row).setIdentity();
-  }
+  const Eigen::MatrixXd byPoint = Eigen::Matrix2d::Identity().replicate(rays.size() / 2, 1);
   return mount.principalPointSigma * mount.principalPointSigma * byPoint * byPoint.transpose() +
          mount.focalLengthSigma * mount.focalLengthSigma * rays * rays.transpose();
 }
 
-vpMatrix6d mountDoubt(const vpBasePose &pose, const vpMountFrame &mount)
+vpMatrix6d mountCovariance(const vpBasePose &pose, const vpMountFrame &mount)
 {
   Eigen::Matrix<double, 6, 4> byMount = Eigen::Matrix<double, 6, 4>::Zero(); // translation, yaw
   byMount.topLeftCorner<3, 3>() = -pose.wRb;
@@ -140,40 +127,34 @@ vpMatrix6d mountDoubt(const vpBasePose &pose, const vpMountFrame &mount)
 vpMatrix6d levelCovariance(const Eigen::MatrixXd &K, const Eigen::MatrixXd &S, const Eigen::MatrixXd &byTilt,
                            const Eigen::Matrix2d &tilt)
 {
+  const std::array<int, 4> own = {0, 1, 2, 5}; // x, y, z, yaw
+  const std::array<int, 2> lean = {3, 4};
   const Eigen::Matrix4d estimated = K * S * K.transpose();
   const Eigen::Matrix<double, 4, 2> withTilt = -K * byTilt * tilt;
-  const int own[4] = {0, 1, 2, 5}; // x, y, z, yaw
-  vpMatrix6d covariance = vpMatrix6d::Zero();
-  covariance.block<2, 2>(3, 3) = tilt;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j)
-      covariance(own[i], own[j]) = (estimated(i, j) + estimated(j, i)) / 2;
-    covariance.block<1, 2>(own[i], 3) = withTilt.row(i);
-    covariance.block<2, 1>(3, own[i]) = withTilt.row(i).transpose();
-  }
+  vpMatrix6d covariance;
+  covariance(own, own) = (estimated + estimated.transpose()) / 2;
+  covariance(own, lean) = withTilt;
+  covariance(lean, own) = withTilt.transpose();
+  covariance(lean, lean) = tilt;
   return covariance;
 }
 
-vpLampPair::vpLampPair(const vpLampSight &first, const vpLampSight &second, const vpMountFrame &mount,
-                       const Eigen::Matrix3d &level)
-    : step(second.position.x() - first.position.x(), second.position.y() - first.position.y()),
-      rise(second.position.z() - first.position.z())
+vpUprightRay::vpUprightRay(const Eigen::Vector2d &ray, const vpMountFrame &mount)
 {
-  const vpLampSight *lamps[2] = {&first, &second};
-  for (int k = 0; k < 2; ++k) {
-    const Eigen::Vector3d up = level * mount.bRc * lamps[k]->ray.homogeneous();
-    aboveHorizon[k] = up.z() > leastDepth * up.norm();
-    if (aboveHorizon[k])
-      ray[k] = {up.x() / up.z(), up.y() / up.z()};
-  }
+  static const double leastRise = 1e-3; // share of a unit ray
+  const Eigen::Vector3d up = mount.bRc * ray.homogeneous();
+  aboveHorizon = up.allFinite() && up.z() > leastRise * up.norm();
+  const Eigen::Vector2d q = up.head<2>() / up.z();
+  value = {q.x(), q.y()};
+  byRay = (mount.bRc.topLeftCorner<2, 2>() - q * mount.bRc.block<1, 2>(2, 0)) / up.z();
 }
 
 std::vector<double> vpLampPair::heights(bool &disagree) const
 {
-  const std::complex<double> apart = ray[1] - ray[0];
+  const std::complex<double> apart = rays[1] - rays[0];
   const double a = std::norm(apart); // a H^2 + 2 b H + c = 0
-  const double b = rise * std::real(std::conj(apart) * ray[1]);
-  const double c = rise * rise * std::norm(ray[1]) - std::norm(step);
+  const double b = rise * std::real(std::conj(apart) * rays[1]);
+  const double c = rise * rise * std::norm(rays[1]) - std::norm(step);
   const double discriminant = b * b - a * c;
   disagree = discriminant < 0;
   std::vector<double> valid;
@@ -185,18 +166,6 @@ std::vector<double> vpLampPair::heights(bool &disagree) const
       valid.push_back(H);
   }
   return valid;
-}
-
-vpBasePose vpLampPair::pose(double H, const vpLampSight &first, const vpMountFrame &mount,
-                            const Eigen::Matrix3d &level) const
-{
-  const double yaw = heading(H);
-  const std::complex<double> camera =
-      std::complex<double>(first.position.x(), first.position.y()) - H * std::polar(1.0, yaw) * ray[0];
-  vpBasePose pose;
-  pose.wRb = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * level;
-  pose.wtb = Eigen::Vector3d(camera.real(), camera.imag(), first.position.z() - H) - pose.wRb * mount.btc;
-  return pose;
 }
 
 std::string sightProblem(const std::vector<vpLampSight> &lamps)
@@ -218,6 +187,19 @@ std::string sightProblem(const std::vector<vpLampSight> &lamps)
         return "lamp " + lamp.id + " is given twice; a lamp hangs in one place only";
   }
   return "";
+}
+
+std::string degrees(double angle)
+{
+  std::ostringstream text;
+  text.precision(3);
+  text << angle * 180 / M_PI << " degrees";
+  return text.str();
+}
+
+std::string tooFewLamps(size_t seen)
+{
+  return seen == 0 ? "no lamp of the map seen" : "one lamp of the map seen, two are needed for a position";
 }
 
 vpVlpFix refusedFix(const std::string &refusal)

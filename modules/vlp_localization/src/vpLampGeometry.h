@@ -7,8 +7,8 @@
 
 /*!
   \file vpLampGeometry.h
-  What the solvers share: the ray that a pose predicts for a lamp, its derivatives, the doubt of lamps and
-  mount, and the closed form of two lamps. Private to the module.
+  What the solvers share: the ray that a pose predicts for a lamp, its derivatives, the covariances of lamps
+  and mount, and the closed form of two lamps. Private to the module.
 */
 
 #include <complex>
@@ -70,11 +70,11 @@ vpPredictedRay predictRay(const Eigen::Vector3d &lamp, const vpBasePose &pose, c
 
 //! Covariance of measured minus predicted ray: the image point's and the lamp position's, by the derivative
 //! above.
-Eigen::Matrix2d rayDoubt(const vpLampSight &lamp, const vpPredictedRay &predicted);
+Eigen::Matrix2d rayCovariance(const vpLampSight &lamp, const vpPredictedRay &predicted);
 
 //! Covariance of the camera's tilt on a level base about x and y of w, rad^2: the rig's roll and pitch sigma
 //! turned by the yaw.
-Eigen::Matrix2d tiltDoubt(const vpBasePose &pose, const vpMountFrame &mount);
+Eigen::Matrix2d tiltCovariance(const vpBasePose &pose, const vpMountFrame &mount);
 
 //! Derivative of rays by that tilt, about the camera's own centre. \param byBase By the base, 2n x 6, columns
 //! as of vpPredictedRay. \return 2n x 2.
@@ -83,17 +83,17 @@ Eigen::MatrixXd byCameraTilt(const Eigen::Matrix<double, Eigen::Dynamic, 6> &byB
 
 //! Covariance of rays by the errors of principal point and focal length, which all share. \param rays 2n.
 //! \return 2n x 2n.
-Eigen::MatrixXd lensDoubt(const Eigen::VectorXd &rays, const vpMountFrame &mount);
+Eigen::MatrixXd lensCovariance(const Eigen::VectorXd &rays, const vpMountFrame &mount);
 
 /*!
   What the mount's translation and yaw add to the covariance of wMb = wMc bMc^-1: an error e of its yaw
   turns the base by -e about its z and moves it by e z x btc, one of its translation moves it by as much the
   other way.
 */
-vpMatrix6d mountDoubt(const vpBasePose &pose, const vpMountFrame &mount);
+vpMatrix6d mountCovariance(const vpBasePose &pose, const vpMountFrame &mount);
 
 /*!
-  Covariance of wMb, without mountDoubt(), where roll and pitch were taken as level and x, y, z, yaw
+  Covariance of wMb, without mountCovariance(), where roll and pitch were taken as level and x, y, z, yaw
   estimated.
 
   Implicit differentiation at the solution p = (x, y, z, yaw). With an error n of the rays, the lens's
@@ -116,23 +116,20 @@ vpMatrix6d mountDoubt(const vpBasePose &pose, const vpMountFrame &mount);
 vpMatrix6d levelCovariance(const Eigen::MatrixXd &K, const Eigen::MatrixXd &S, const Eigen::MatrixXd &byTilt,
                            const Eigen::Matrix2d &tilt);
 
-//! Two lamps under a known attitude. Rays upright: turned level and scaled to unit height, as x + iy.
+//! A ray turned level and scaled to unit height, x + iy, in a frame that has the base's heading.
+struct vpUprightRay {
+  vpUprightRay(const Eigen::Vector2d &ray, const vpMountFrame &mount);
+
+  bool aboveHorizon; // else the rest is not set
+  std::complex<double> value;
+  Eigen::Matrix2d byRay; // derivative
+};
+
+//! Two lamps seen from a level base.
 struct vpLampPair {
-  std::complex<double> step;             // from the first lamp to the second in the map, m
-  double rise = 0;                       // m, height of the second lamp above the first
-  std::complex<double> ray[2];           // upright
-  bool aboveHorizon[2] = {false, false}; // else that ray is not set
-
-  //! \e level: rotation from b to a level frame that has the base's heading.
-  vpLampPair(const vpLampSight &first, const vpLampSight &second, const vpMountFrame &mount,
-             const Eigen::Matrix3d &level);
-
-  //! Of rays that are upright already.
-  vpLampPair(const std::complex<double> &step, double rise, const std::complex<double> &first,
-             const std::complex<double> &second)
-      : step(step), rise(rise), ray{first, second}, aboveHorizon{true, true}
-  {
-  }
+  std::complex<double> step;    // from the first lamp to the second in the map, m
+  double rise;                  // m, height of the second lamp above the first
+  std::complex<double> rays[2]; // upright
 
   /*!
     Heights H of the first lamp above the camera, m, with both lamps above it: the roots of
@@ -142,16 +139,18 @@ struct vpLampPair {
   std::vector<double> heights(bool &disagree) const;
 
   //! Heading of the base that sees the first lamp at height \e H above the camera, rad.
-  double heading(double H) const { return std::arg(step / (H * (ray[1] - ray[0]) + rise * ray[1])); }
-
-  //! The pose that sees \e first at height \e H above the camera.
-  vpBasePose pose(double H, const vpLampSight &first, const vpMountFrame &mount,
-                  const Eigen::Matrix3d &level) const;
+  double heading(double H) const { return std::arg(step / (H * (rays[1] - rays[0]) + rise * rays[1])); }
 };
 
 //! Why the lamps cannot be used together, in one line: a value that is none, an id given twice. Empty where
 //! they can.
 std::string sightProblem(const std::vector<vpLampSight> &lamps);
+
+//! An angle (rad) in words.
+std::string degrees(double angle);
+
+//! Why so few lamps give no position.
+std::string tooFewLamps(size_t seen);
 
 //! A fix that is none.
 vpVlpFix refusedFix(const std::string &refusal);

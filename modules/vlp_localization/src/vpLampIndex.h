@@ -6,7 +6,6 @@
 #define vpLampIndex_h
 
 #include <complex>
-#include <memory>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -15,12 +14,7 @@
 
 BEGIN_VISP_NAMESPACE
 
-/*!
-  The blinking lamps of a map by identifier and place. Private to the module.
-
-  One KD-tree (nanoflann) over x, y and the identifier as a third coordinate, whose steps are longer than any
-  distance in the map: a search in x and y around a place never meets another identifier's lamps.
-*/
+//! The blinking lamps of a map by identifier, and each identifier's in the order of x. Private to the module.
 class vpLampIndex
 {
 public:
@@ -32,20 +26,16 @@ public:
   };
   static constexpr size_t nowhere = static_cast<size_t>(-1);
 
-  //! \param scan Compare with every lamp of the map instead of asking the tree.
-  vpLampIndex(const vpLampMap &map, bool scan);
-  ~vpLampIndex();
-  vpLampIndex(const vpLampIndex &) = delete;
-  vpLampIndex &operator=(const vpLampIndex &) = delete;
+  explicit vpLampIndex(const vpLampMap &map);
 
   //! By the lamp's index in the map.
   const Lamp &lamp(size_t index) const { return m_lamps[index]; }
   //! Index in the map of the blinking lamp of that id; nowhere where there is none.
   size_t find(const std::string &id) const;
   //! Blinking lamps.
-  size_t size() const { return m_blinking; }
-  size_t identifiers() const { return m_byIdentifier.size(); }
-  const std::vector<size_t> &lampsOf(size_t identifier) const { return m_byIdentifier[identifier]; }
+  size_t size() const { return m_byName.size(); }
+  //! Of these, the lamps of an identifier.
+  size_t carriers(size_t identifier) const;
   double lowest() const { return m_lowest; }               // m, height of the lowest blinking lamp
   double highest() const { return m_highest; }             // m
   double greatestSigma() const { return m_greatestSigma; } // m, of the blinking lamps' positions
@@ -57,19 +47,14 @@ public:
               std::vector<size_t> &found) const;
 
 private:
-  struct Tree;
-
   std::vector<Lamp> m_lamps;
   std::unordered_map<std::string, size_t> m_byName;
   std::vector<std::vector<size_t>> m_byIdentifier;
-  size_t m_blinking = 0;
   double m_lowest = 0;
   double m_highest = 0;
   double m_greatestSigma = 0;
   double m_length = 0; // m, along x
   double m_width = 0;  // m, along y
-  bool m_scan = false;
-  std::unique_ptr<Tree> m_tree;
 };
 
 END_VISP_NAMESPACE

@@ -31,35 +31,18 @@ void expect(bool right, const std::string &name, double came, const std::string 
   }
 }
 
-double square(double x)
-{
-  return x * x;
-}
-
-double greatestEigenvalue(const Eigen::Matrix2d &m)
-{
-  const double half = 0.5 * m.trace();
-  return half + std::sqrt(std::max(0.0, half * half - m.determinant()));
-}
-
 //! The ray of an observation, turned upright. False where it does not point above the horizon.
 bool turnUpright(const vpLampObservation &observation, const vpVlpRig &rig, double tiltSigma,
                  vpSeenLamp &seen)
 {
   const vpLampSight sight = vpLampSight::from(vpLamp(), observation, rig.camera);
-  const Eigen::Matrix3d R = vpMountFrame(rig).bRc;
-  const Eigen::Vector3d up = R * sight.ray.homogeneous();
-  const double leastRise = 1e-3;
-  if (!up.allFinite() || !(up.z() > leastRise * up.norm())) {
-    return false;
-  }
-  const Eigen::Vector2d q = up.head<2>() / up.z();
-  const Eigen::Matrix2d byRay = (R.topLeftCorner<2, 2>() - q * R.block<1, 2>(2, 0)) / up.z();
-  seen.ray = {q.x(), q.y()};
+  const vpUprightRay upright(sight.ray, vpMountFrame(rig));
+  seen.ray = upright.value;
   // A lean moves all rays alike, which the pose takes up, but for a part that grows with their square.
-  seen.variance =
-      greatestEigenvalue(byRay * sight.covariance * byRay.transpose()) + square(tiltSigma * q.squaredNorm());
-  return std::isfinite(seen.variance);
+  const Eigen::Matrix2d covariance = upright.byRay * sight.covariance * upright.byRay.transpose();
+  const double lean = tiltSigma * std::norm(upright.value);
+  seen.variance = covariance.selfadjointView<Eigen::Lower>().operatorNorm() + lean * lean;
+  return upright.aboveHorizon && std::isfinite(seen.variance);
 }
 
 //! What an observation may be, by its candidates or its id.
@@ -68,10 +51,8 @@ void addOptions(const vpLampObservation &observation, const vpLampIndex &index, 
   const double all = static_cast<double>(index.size());
   for (const vpLedIdCandidate &candidate : observation.candidates) {
     const double p = candidate.probability;
-    const size_t carriers =
-        candidate.identifier < index.identifiers() ? index.lampsOf(candidate.identifier).size() : 0;
-    if (carriers > 0 && p > 0) {
-      const double n = static_cast<double>(carriers);
+    const double n = static_cast<double>(index.carriers(candidate.identifier));
+    if (n > 0 && p > 0) {
       seen.options.push_back({candidate.identifier, vpLampIndex::nowhere, p, std::log(p * all / n)});
       seen.lamps += n;
     }
@@ -84,26 +65,6 @@ void addOptions(const vpLampObservation &observation, const vpLampIndex &index, 
   }
 }
 
-double probabilityOf(const vpSeenLamp &seen, size_t lamp, const vpLampIndex &index)
-{
-  for (const vpSeenLamp::Option &option : seen.options) {
-    if (lamp != vpLampMatch::noLamp && option.identifier == index.lamp(lamp).identifier) {
-      return option.probability;
-    }
-  }
-  return 0;
-}
-
-vpHomogeneousMatrix baseOf(const Place &place, const vpMountFrame &mount)
-{
-  const Complex camera = place.camera - place.heading * Complex(mount.btc.x(), mount.btc.y());
-  vpBasePose pose;
-  pose.wRb << place.heading.real(), -place.heading.imag(), 0, place.heading.imag(), place.heading.real(), 0,
-      0, 0, 1;
-  pose.wtb = {camera.real(), camera.imag(), place.height - mount.btc.z()};
-  return pose.wMb();
-}
-
 std::string shown(const Place &place)
 {
   std::ostringstream text;
@@ -111,11 +72,6 @@ std::string shown(const Place &place)
   text.precision(2);
   text << "(" << place.camera.real() << ", " << place.camera.imag() << ")";
   return text.str();
-}
-
-std::string tooFew(size_t seen)
-{
-  return seen == 0 ? "no lamp of the map seen" : "one lamp of the map seen, two are needed for a position";
 }
 
 std::string whyNot(const std::vector<Place> &places, size_t seen, bool complete)
@@ -134,65 +90,43 @@ std::string whyNot(const std::vector<Place> &places, size_t seen, bool complete)
          shown(places[0]) + " and " + shown(places[1]);
 }
 
-//! Where the camera can be, of a base that stands on the floor.
-vpPlaceSearch::Bounds underTheLamps(const vpLampMatcher &settings, const vpMountFrame &mount)
-{
-  vpPlaceSearch::Bounds bounds;
-  bounds.height = settings.baseHeight + mount.btc.z();
-  bounds.heightSigma = settings.baseHeightSigma;
-  return bounds;
-}
-
 //! Where the camera can be, by the last pose of the base.
 vpPlaceSearch::Bounds around(vpPlaceSearch::Bounds bounds, const vpPoseHint &hint, const vpMountFrame &mount)
 {
-  static const double leastReach = 0.05, leastTurn = 0.02; // m, rad
   bounds.anywhere = false;
-  bounds.turn = std::min(M_PI, std::max(leastTurn, hint.turn));
+  bounds.turn = std::min(M_PI, hint.turn);
   bounds.heading = std::atan2(hint.wMb[1][0], hint.wMb[0][0]);
   const Complex arm(mount.btc.x(), mount.btc.y());
   bounds.around = Complex(hint.wMb[0][3], hint.wMb[1][3]) + std::polar(1.0, bounds.heading) * arm;
-  bounds.reach = std::max(leastReach, hint.reach) + std::abs(arm) * std::min(2.0, bounds.turn);
+  bounds.reach = hint.reach + std::abs(arm) * std::min(2.0, bounds.turn);
   return bounds;
 }
 
 bool isPose(const vpPoseHint &hint)
 {
   const double sum = hint.wMb[0][3] + hint.wMb[1][3] + hint.wMb[0][0] + hint.wMb[1][0];
-  return std::isfinite(sum) && hint.reach >= 0 && hint.turn >= 0;
-}
-
-bool near(const Place &place, const vpPlaceSearch::Bounds &bounds)
-{
-  return std::abs(place.camera - bounds.around) <= bounds.reach &&
-         std::abs(std::arg(place.heading * std::polar(1.0, -bounds.heading))) <= bounds.turn;
+  return std::isfinite(sum) && hint.reach > 0 && hint.turn > 0;
 }
 
 //! Of places that explain equally many regions about equally well the one near the last pose, or nullptr.
 const Place *decidedByHint(const vpPlaceSearch &search, const vpPlaceSearch::Bounds &bounds, double minOdds)
 {
-  const Place *nearest = nullptr;
+  std::vector<const Place *> near;
   size_t most = 0;
   for (const Place &place : search.places()) {
-    if (place.logEvidence < search.places()[0].logEvidence - std::log(minOdds)) {
-      continue;
-    }
-    most = std::max(most, place.count);
-    if (near(place, bounds)) {
-      if (nearest != nullptr) {
-        return nullptr;
+    if (place.logEvidence >= search.places()[0].logEvidence - std::log(minOdds)) {
+      most = std::max(most, place.count);
+      if (bounds.near(place)) {
+        near.push_back(&place);
       }
-      nearest = &place;
     }
   }
-  const bool decided =
-      nearest != nullptr && nearest->count == most && !search.model().tooFewOnALine(*nearest);
-  return decided ? nearest : nullptr;
+  return near.size() == 1 && near[0]->count == most && !search.tooFewOnALine(*near[0]) ? near[0] : nullptr;
 }
 } // namespace
 
-vpLampMatcher::vpLampMatcher(const vpVlpRig &rig, const vpLampMap &map, Search search)
-    : m_rig(rig), m_index(std::make_shared<vpLampIndex>(map, search == Search::scan))
+vpLampMatcher::vpLampMatcher(const vpVlpRig &rig, const vpLampMap &map)
+    : m_rig(rig), m_index(std::make_shared<vpLampIndex>(map))
 {
 }
 
@@ -241,21 +175,27 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   std::vector<size_t> which;
   const std::vector<vpSeenLamp> seen = seenLamps(observations, usable, which);
   if (seen.size() < 2) {
-    match.refusal = tooFew(seen.size());
+    match.refusal = tooFewLamps(seen.size());
     return match;
   }
 
   const vpMountFrame mount(m_rig);
   const double area = m_rig.width * m_rig.height / (m_rig.camera.get_px() * m_rig.camera.get_py());
-  const vpPlaceSearch::Bounds anywhere = underTheLamps(*this, mount);
+  vpPlaceSearch::Bounds anywhere;
+  anywhere.height = baseHeight + mount.btc.z();
+  anywhere.heightSigma = baseHeightSigma;
   const auto accept = [&](const vpPlaceSearch &search, const Place &best) {
     match.outcome = vpLampMatch::Outcome::unique;
     match.odds = search.odds(best);
-    match.wMb = baseOf(best, mount);
+    const Eigen::AngleAxisd turn(std::arg(best.heading), Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d camera(best.camera.real(), best.camera.imag(), best.height);
+    match.wMb = vpBasePose{turn.matrix(), camera - turn * mount.btc}.wMb();
     const Place place = search.withoutUndecided(best);
     for (size_t k = 0; k < seen.size(); ++k) {
-      match.lamps[which[k]] = place.lamps[k];
-      match.probabilities[which[k]] = probabilityOf(seen[k], place.lamps[k], *m_index);
+      if (place.lamps[k] != vpLampMatch::noLamp) {
+        match.lamps[which[k]] = place.lamps[k];
+        match.probabilities[which[k]] = seen[k].option(m_index->lamp(place.lamps[k]))->probability;
+      }
     }
     return match;
   };
@@ -264,8 +204,7 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   const bool hinted = hint && isPose(*hint);
   const vpPlaceSearch::Bounds nearby = hinted ? around(anywhere, *hint, mount) : anywhere;
   if (hinted) {
-    vpPlaceSearch local(*this, *m_index, seen, area, nearby);
-    local.run();
+    const vpPlaceSearch local(*this, *m_index, seen, area, nearby);
     match.hypotheses += local.hypotheses();
     match.byHint = local.decided() && local.places()[0].count == seen.size();
     if (match.byHint) {
@@ -274,8 +213,8 @@ vpLampMatch vpLampMatcher::match(const std::vector<vpLampObservation> &observati
   }
 
   // The whole map; of places that explain the picture alike the last pose decides.
-  vpPlaceSearch search(*this, *m_index, seen, area, anywhere);
-  const bool complete = search.run();
+  const vpPlaceSearch search(*this, *m_index, seen, area, anywhere);
+  const bool complete = search.complete();
   match.hypotheses += search.hypotheses();
   if (search.decided()) {
     return accept(search, search.places()[0]);

@@ -16,12 +16,6 @@ size_t timesSeen(const std::string &id, const std::vector<vpLampObservation> &ob
                                            [&](const vpLampObservation &other) { return other.id == id; }));
 }
 
-//! What is said of a region that is none of the lamps which the place shows.
-std::string strangerRemark(const std::string &id)
-{
-  return id.empty() ? "no lamp of the map hangs there: a reflection, or another lamp that blinks alike"
-                    : "a reflection of lamp " + id + ", or another lamp that blinks alike";
-}
 } // namespace
 
 bool namedApart(const std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable)
@@ -35,25 +29,26 @@ bool namedApart(const std::vector<vpLampObservation> &observations, const std::v
 void nameByPlace(const vpLampMatch &match, const vpLampMap &map, std::vector<vpLampObservation> &observations,
                  std::vector<size_t> &usable)
 {
+  const bool unique = match.outcome == vpLampMatch::Outcome::unique;
   std::vector<size_t> named;
   for (size_t i : usable) {
     vpLampObservation &lamp = observations[i];
     const size_t times = lamp.id.empty() ? 0 : timesSeen(lamp.id, observations);
-    if (match.outcome == vpLampMatch::Outcome::unique) {
-      if (match.lamps[i] == vpLampMatch::noLamp) {
-        lamp.remark = strangerRemark(lamp.id);
-      } else {
-        lamp.id = map.lamps[match.lamps[i]].id;
-        lamp.confidence = match.probabilities[i];
-        lamp.remark.clear();
-        named.push_back(i);
-      }
+    if (unique && match.lamps[i] != vpLampMatch::noLamp) {
+      lamp.id = map.lamps[match.lamps[i]].id;
+      lamp.confidence = match.probabilities[i];
+      lamp.remark.clear();
+      named.push_back(i);
+    } else if (unique) {
+      lamp.remark = (lamp.id.empty() ? "no lamp of the map hangs there: a reflection"
+                                     : "a reflection of lamp " + lamp.id) +
+                    ", or another lamp that blinks alike";
     } else if (times == 1) {
       named.push_back(i);
-    } else if (times > 1) {
-      lamp.remark = "seen " + std::to_string(times) + " times, a reflection among them: " + match.refusal;
     } else {
-      lamp.remark = match.refusal;
+      lamp.remark =
+          times == 0 ? match.refusal
+                     : "seen " + std::to_string(times) + " times, a reflection among them: " + match.refusal;
     }
   }
   usable = named;

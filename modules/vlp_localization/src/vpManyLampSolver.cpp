@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <opencv2/calib3d.hpp>
 #include <visp3/vlp_localization/vpTwoLampSolver.h>
 
 #include "vpLampGeometry.h"
@@ -22,15 +23,7 @@ namespace
 {
 using Minimum = vpRayFit::Minimum;
 
-std::string degrees(double angle)
-{
-  std::ostringstream text;
-  text.precision(3);
-  text << angle * 180 / M_PI << " degrees";
-  return text.str();
-}
-
-// Weights are inverse covariances: a lamp without doubt has none.
+// Weights are inverse covariances, which a lamp that is exact has not.
 std::string weightProblem(const std::vector<vpLampSight> &lamps)
 {
   for (const vpLampSight &lamp : lamps) {
@@ -53,106 +46,52 @@ bool onOneLine(const std::vector<vpLampSight> &lamps)
   return scatter.eigenvalues()(1) <= thinnest * thinnest * scatter.eigenvalues()(2);
 }
 
-// The two lamps farthest apart in the picture.
-std::pair<size_t, size_t> widestPair(const std::vector<vpLampSight> &lamps)
+/*
+  Poses that three lamps in a row leave, up to four each (Grunert 1841; solved after Ke and Roumeliotis 2017).
+  Lamps that are not all on one line have three in a row that are not.
+*/
+std::vector<vpBasePose> posesOfThrees(const std::vector<vpLampSight> &lamps, const vpMountFrame &mount)
 {
-  std::pair<size_t, size_t> widest(0, 1);
-  double apart = 0;
-  for (size_t i = 0; i < lamps.size(); ++i)
-    for (size_t j = i + 1; j < lamps.size(); ++j)
-      if ((lamps[i].ray - lamps[j].ray).norm() > apart) {
-        apart = (lamps[i].ray - lamps[j].ray).norm();
-        widest = {i, j};
-      }
-  return widest;
-}
-
-// Poses to start from whose up direction in b is \e up: the closed form of the widest pair under that
-// attitude.
-std::vector<vpBasePose> posesWithUp(const Eigen::Vector3d &up, const std::vector<vpLampSight> &lamps,
-                                    const vpMountFrame &mount)
-{
-  const auto [i, j] = widestPair(lamps);
-  const Eigen::Vector3d axis(up.y(), -up.x(), 0); // up x z
-  Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
-  if (axis.norm() > 0)
-    level = Eigen::AngleAxisd(std::atan2(axis.norm(), up.z()), axis.normalized());
-  const vpLampPair pair(lamps[i], lamps[j], mount, level);
   std::vector<vpBasePose> poses;
-  if (!pair.aboveHorizon[0] || !pair.aboveHorizon[1] || !(std::abs(pair.ray[1] - pair.ray[0]) > 0))
-    return poses;
-  bool disagree = false;
-  std::vector<double> heights = pair.heights(disagree);
-  if (heights.empty()) // under a wrong attitude there may be none: as if both hung at one height
-    heights.push_back(std::max(0.0, -pair.rise) + std::abs(pair.step) / std::abs(pair.ray[1] - pair.ray[0]));
-  for (double H : heights)
-    poses.push_back(pair.pose(H, lamps[i], mount, level));
+  for (size_t first = 0; first < (lamps.size() == 3 ? 1 : lamps.size()); ++first) {
+    std::vector<cv::Point3d> places;
+    std::vector<cv::Point2d> rays;
+    for (size_t k = first; k < first + 3; ++k) {
+      const vpLampSight &lamp = lamps[k % lamps.size()];
+      places.emplace_back(lamp.position.x(), lamp.position.y(), lamp.position.z());
+      rays.emplace_back(lamp.ray.x(), lamp.ray.y());
+    }
+    std::vector<cv::Vec3d> turns, ways;
+    cv::solveP3P(places, rays, cv::Matx33d::eye(), cv::noArray(), turns, ways, cv::SOLVEPNP_AP3P);
+    for (size_t k = 0; k < turns.size(); ++k) {
+      const Eigen::Vector3d turn(turns[k].val), way(ways[k].val); // of cMw
+      const Eigen::Matrix3d wRc = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()).inverse().matrix();
+      const Eigen::Matrix3d wRb = wRc * mount.bRc.transpose();
+      const Eigen::Vector3d wtb = -wRc * way - wRb * mount.btc;
+      if (wtb.allFinite())
+        poses.push_back({wRb, wtb});
+    }
+  }
   return poses;
 }
 
-/*
-  Up directions in b from which a search over all attitudes starts: level, and rings of twelve up to maxTilt.
-  A far denser grid finds a further pose for 3 of 1000 random triples, and for no group of four.
-*/
-std::vector<Eigen::Vector3d> upDirections(double maxTilt)
-{
-  const int rings = 4, perRing = 12;
-  std::vector<Eigen::Vector3d> ups = {Eigen::Vector3d::UnitZ()};
-  for (int ring = 1; ring <= rings; ++ring)
-    for (int k = 0; k < perRing; ++k) {
-      const double tilt = maxTilt * ring / rings, azimuth = 2 * M_PI * k / perRing;
-      ups.emplace_back(std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
-                       std::cos(tilt));
-    }
-  return ups;
-}
-
-void addIfNew(std::vector<Minimum> &minima, const Minimum &found)
-{
-  for (Minimum &known : minima) {
-    const double turn = Eigen::AngleAxisd(known.pose.wRb.transpose() * found.pose.wRb).angle();
-    if (turn < 1e-3 && (known.pose.wtb - found.pose.wtb).norm() < 1e-3) {
-      if (found.cost < known.cost)
-        known = found;
-      return;
-    }
-  }
-  minima.push_back(found);
-}
-
+// Adds the minima that a fit finds from there, each once.
 void descend(std::vector<Minimum> &minima, const vpRayFit &fit, const std::vector<vpBasePose> &starts,
              double maxTilt, int rounds = 3)
 {
+  static const double same = 1e-3; // m and rad
   for (const vpBasePose &start : starts) {
     const Minimum found = fit.minimise(start, rounds);
-    if (found.converged && found.pose.tilt() <= maxTilt)
-      addIfNew(minima, found);
+    if (!found.converged || found.pose.tilt() > maxTilt)
+      continue;
+    const auto known = std::find_if(minima.begin(), minima.end(), [&](const Minimum &minimum) {
+      return minimum.pose.stepTo(found.pose).norm() < same;
+    });
+    if (known == minima.end())
+      minima.push_back(found);
+    else if (found.cost < known->cost)
+      *known = found;
   }
-}
-
-/*
-  All local minima of the free attitude. A flat group of lamps has two: seen along the line of sight l, a
-  plane whose normal is mirrored at l looks the same but for perspective. Three lamps have up to four exact
-  poses (Grunert 1841).
-*/
-std::vector<Minimum> freeMinima(const vpRayFit &fit, const std::vector<vpLampSight> &lamps,
-                                const vpMountFrame &mount, double maxTilt)
-{
-  std::vector<Minimum> found, minima;
-  for (const Eigen::Vector3d &up : upDirections(maxTilt))
-    descend(found, fit, posesWithUp(up, lamps, mount), maxTilt, 1);
-
-  Eigen::Vector3d sight = Eigen::Vector3d::Zero();
-  for (const vpLampSight &lamp : lamps)
-    sight += mount.bRc * lamp.ray.homogeneous().normalized();
-  sight.normalize();
-  for (size_t k = 0; k < found.size(); ++k) { // found grows
-    const Eigen::Vector3d up = found[k].pose.bUp();
-    descend(found, fit, posesWithUp(2 * up.dot(sight) * sight - up, lamps, mount), maxTilt, 1);
-  }
-  for (const Minimum &minimum : found)
-    descend(minima, fit, {minimum.pose}, maxTilt);
-  return minima;
 }
 
 /*
@@ -221,7 +160,7 @@ vpVlpFix fixOf(std::vector<Minimum> &minima, const vpRayFit &fit, const std::vec
     return refusedFix("the lamps do not determine the pose");
   if (free)
     addCurvature(fix.covariance, best, vpRayFit(lamps, mount, vpRayFit::Kind::freeTiltHeld), likelihood);
-  fix.covariance += mountDoubt(best.pose, mount);
+  fix.covariance += mountCovariance(best.pose, mount);
   fix.chiSquare = best.cost;
   fix.degreesOfFreedom = fit.degreesOfFreedom();
   fix.ambiguous = minima.size() > 1 && std::abs(minima[1].cost - best.cost) < 2 * std::log(likelihood);
@@ -273,7 +212,10 @@ vpVlpFix vpManyLampSolver::solveFree(const std::vector<vpLampSight> &lamps, cons
 
   const vpMountFrame mount(rig);
   const vpRayFit fit(lamps, mount, vpRayFit::Kind::free);
-  std::vector<Minimum> minima = freeMinima(fit, lamps, mount, maxTilt);
+  std::vector<Minimum> found, minima;
+  descend(found, fit, posesOfThrees(lamps, mount), maxTilt, 1);
+  for (const Minimum &minimum : found)
+    descend(minima, fit, {minimum.pose}, maxTilt);
   if (minima.empty())
     return refusedFix("no pose within " + degrees(maxTilt) + " of the vertical sees the " +
                       std::to_string(lamps.size()) + " lamps");

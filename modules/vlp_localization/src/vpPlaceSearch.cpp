@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+
+#include <Eigen/LU>
 
 #include "vpLampGeometry.h"
 
@@ -14,106 +17,67 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double gate = vpPlaceModel::gate;
-const double leastDepth = vpPlaceModel::leastDepth;
-const double negligible = 20;   // a place e to this power less likely than the best is forgotten
-const double slackOfPair = 0.3; // m and rad, by which a pair may miss the bounds that all its lamps keep
-const size_t maxPlaces = 2000;  // of a picture that as many explain nobody asks which
+const double gate = 4;         // standard deviations, beyond which a lamp is not where it is expected
+const double negligible = 20;  // a place e to this power less likely than the best is forgotten
+const size_t maxPlaces = 2000; // of a picture that as many explain nobody asks which
 const size_t noLamp = vpLampMatch::noLamp;
 
 double square(double x)
 {
   return x * x;
 }
+
+bool has(const std::vector<size_t> &all, size_t one)
+{
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
 } // namespace
+
+const vpSeenLamp::Option *vpSeenLamp::option(const vpLampIndex::Lamp &lamp) const
+{
+  const auto found = std::find_if(options.begin(), options.end(),
+                                  [&](const Option &option) { return option.identifier == lamp.identifier; });
+  return found == options.end() ? nullptr : &*found;
+}
+
+bool vpPlaceSearch::Bounds::near(const Place &place) const
+{
+  return std::abs(place.camera - around) <= reach &&
+         std::abs(std::arg(place.heading * std::polar(1.0, -heading))) <= turn;
+}
 
 vpPlaceSearch::vpPlaceSearch(const vpLampMatcher &settings, const vpLampIndex &index,
                              const std::vector<vpSeenLamp> &seen, double pictureArea, const Bounds &bounds)
-    : m_model(settings, index, seen, pictureArea, bounds), m_settings(settings), m_index(index), m_seen(seen),
-      m_bounds(bounds)
+    : m_settings(settings), m_index(index), m_seen(seen), m_area(pictureArea), m_bounds(bounds)
 {
-}
-
-bool vpPlaceSearch::run()
-{
-  const std::vector<size_t> order = ordered();
-  // A pose that all pairs of the first k + 1 regions miss has one of them at most.
-  for (size_t k = 1; k < order.size() && m_allowed && !complete(k); ++k) {
-    for (size_t i = 0; i < k && m_allowed; ++i) {
+  std::vector<size_t> order(seen.size()); // regions that few lamps of the map can be come first
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t i, size_t j) { return seen[i].lamps < seen[j].lamps; });
+  // A place that all pairs of the first k regions miss has one of them at most.
+  for (size_t k = 1; k < order.size() && m_complete && order.size() + 1 >= k + needed(); ++k) {
+    for (size_t i = 0; i < k && m_complete; ++i) {
       tryPair(order[i], order[k]);
-      m_allowed = m_hypotheses < m_settings.maxHypotheses && m_places.size() < maxPlaces;
+      m_complete = m_hypotheses < m_settings.maxHypotheses && m_places.size() < maxPlaces;
     }
   }
   std::stable_sort(m_places.begin(), m_places.end(),
                    [](const Place &a, const Place &b) { return a.logEvidence > b.logEvidence; });
-  return m_allowed;
 }
 
-/*!
-  Regions that few lamps of the map can be come first, and of these such as lie far apart: their pairs are few
-  and fix the pose best.
-*/
-std::vector<size_t> vpPlaceSearch::ordered() const
+//! Regions that a place has to explain: two fewer than another one does are never an answer.
+size_t vpPlaceSearch::needed() const
 {
-  std::vector<size_t> order;
-  std::vector<double> apart(m_seen.size()); // from those that are in order already
-  for (size_t i = 0; i < m_seen.size(); ++i) {
-    apart[i] = 1 + std::abs(m_seen[i].ray);
-  }
-  const auto merit = [&](size_t i) { return apart[i] / std::sqrt(m_seen[i].lamps); };
-  while (order.size() < m_seen.size()) {
-    size_t next = noLamp;
-    for (size_t i = 0; i < m_seen.size(); ++i) {
-      const bool used = std::find(order.begin(), order.end(), i) != order.end();
-      if (!used && (next == noLamp || merit(i) > merit(next))) {
-        next = i;
-      }
-    }
-    order.push_back(next);
-    for (size_t i = 0; i < m_seen.size(); ++i) {
-      apart[i] = std::min(apart[i], std::abs(m_seen[i].ray - m_seen[next].ray));
-    }
-  }
-  return order;
+  const double share = std::ceil(m_settings.minShare * static_cast<double>(m_seen.size()));
+  return std::max({size_t(2), static_cast<size_t>(share), m_most - std::min<size_t>(m_most, 1)});
 }
 
-//! Whether a pose that leaves out all but one of the first \e tried regions is no rival of the best any more.
-bool vpPlaceSearch::complete(size_t tried) const
+void vpPlaceSearch::within(const vpSeenLamp::Option &option, const Complex &place, double radius,
+                           std::vector<size_t> &found) const
 {
-  if (m_seen.size() - tried + 1 < m_model.fewest()) {
-    return true;
-  }
-  const auto best = std::max_element(m_places.begin(), m_places.end(), [](const Place &a, const Place &b) {
-    return a.logEvidence < b.logEvidence;
-  });
-  if (best == m_places.end() || tried - 1 + best->count <= m_seen.size()) {
-    return false;
-  }
-  double leastGain = std::numeric_limits<double>::infinity();
-  for (size_t i = 0; i < m_seen.size(); ++i) {
-    const double depth = 0.5 * (m_index.lowest() + m_index.highest()) - best->height;
-    leastGain = std::min(
-        leastGain,
-        m_model.gain(i, square(m_settings.mapTolerance) + square(depth) * m_seen[i].variance, depth));
-  }
-  static const double volume = 10; // what the prior of the pose and the volume of poses that fit can make up
-  const double more = static_cast<double>(tried - 1 + best->count - m_seen.size());
-  return more * leastGain > std::log(m_settings.minOdds) + volume;
-}
-
-void vpPlaceSearch::lampsInReach(const vpSeenLamp &lamp, const vpSeenLamp::Option &option,
-                                 std::vector<size_t> &found) const
-{
-  if (m_bounds.anywhere) {
-    found = m_index.lampsOf(option.identifier);
-  } else {
-    const double depth = m_index.highest() - m_bounds.height + gate * m_bounds.heightSigma;
-    m_index.within(option.identifier, m_bounds.around,
-                   m_bounds.reach + slackOfPair + depth * std::abs(lamp.ray), found);
-  }
+  m_index.within(option.identifier, place, radius, found);
   if (option.only != vpLampIndex::nowhere) {
-    const bool inReach = std::find(found.begin(), found.end(), option.only) != found.end();
-    found.assign(inReach ? 1 : 0, option.only);
+    found.assign(has(found, option.only) ? 1 : 0, option.only);
   }
 }
 
@@ -121,30 +85,34 @@ void vpPlaceSearch::tryPair(size_t i, size_t j)
 {
   const Complex &q = m_seen[i].ray, &other = m_seen[j].ray;
   const double apart = std::abs(other - q);
-  if (square(apart) < 4 * (m_seen[i].variance + m_seen[j].variance)) {
+  if (square(apart) < square(gate) / 4 * (m_seen[i].variance + m_seen[j].variance)) {
     return; // shows no heading
   }
   const double heightRange = gate * m_bounds.heightSigma;
+  const double greatestDepth = m_index.highest() - m_bounds.height + heightRange;
+  const double reach = m_bounds.anywhere
+                           ? std::numeric_limits<double>::infinity()
+                           : m_bounds.reach + greatestDepth * std::abs(q) +
+                                 gate * std::sqrt(variance(i, m_index.greatestSigma(), greatestDepth));
   for (const vpSeenLamp::Option &option : m_seen[i].options) {
-    lampsInReach(m_seen[i], option, m_firsts);
+    within(option, m_bounds.around, reach, m_firsts);
     for (size_t first : m_firsts) {
       const vpLampIndex::Lamp &lamp = m_index.lamp(first);
       const double depth = lamp.height - m_bounds.height;
-      if (depth + heightRange < leastDepth) {
+      if (!(depth + heightRange > 0)) {
         continue; // below the camera
       }
       // |P2 - P1| = |H (q2 - q1) + rise q2|
       const double rise = std::max(m_index.highest() - lamp.height, lamp.height - m_index.lowest());
-      const double doubt =
-          gate * std::sqrt(m_model.variance(i, first, depth) + m_model.variance(j, first, depth));
-      const double margin = rise * std::abs(other) + doubt;
+      const double sigma =
+          std::sqrt(variance(i, lamp.positionSigma, depth) + variance(j, m_index.greatestSigma(), depth));
+      const double margin = rise * std::abs(other) + gate * sigma;
       const double inner = (depth - heightRange) * apart - margin;
       const double outer = (depth + heightRange) * apart + margin;
       for (const vpSeenLamp::Option &otherOption : m_seen[j].options) {
-        m_index.within(otherOption.identifier, lamp.place, outer, m_seconds);
+        within(otherOption, lamp.place, outer, m_seconds);
         for (size_t second : m_seconds) {
-          const bool possible = otherOption.only == vpLampIndex::nowhere || otherOption.only == second;
-          if (possible && second != first && std::abs(m_index.lamp(second).place - lamp.place) >= inner) {
+          if (second != first && std::abs(m_index.lamp(second).place - lamp.place) >= inner) {
             hypothesise(i, first, j, second);
           }
         }
@@ -153,28 +121,24 @@ void vpPlaceSearch::tryPair(size_t i, size_t j)
   }
 }
 
-//! The poses that see two lamps in two regions.
+//! The places that see two lamps in two regions.
 void vpPlaceSearch::hypothesise(size_t i, size_t first, size_t j, size_t second)
 {
-  if (m_hypotheses >= m_settings.maxHypotheses) {
-    return;
-  }
   const vpLampIndex::Lamp &a = m_index.lamp(first), &b = m_index.lamp(second);
-  const vpLampPair pair(b.place - a.place, b.height - a.height, m_seen[i].ray, m_seen[j].ray);
+  const vpLampPair pair{b.place - a.place, b.height - a.height, {m_seen[i].ray, m_seen[j].ray}};
   bool disagree = false;
   for (double H : pair.heights(disagree)) {
+    if (m_hypotheses >= m_settings.maxHypotheses) {
+      return;
+    }
     ++m_hypotheses;
     Place place;
     place.height = a.height - H;
     place.heading = std::polar(1.0, pair.heading(H));
     place.camera = a.place - H * place.heading * m_seen[i].ray;
-    if (!m_model.withinBounds(place, slackOfPair)) {
-      continue;
-    }
     place.lamps.assign(m_seen.size(), noLamp);
     place.lamps[i] = first;
     place.lamps[j] = second;
-    place.count = 2;
     settle(place);
   }
 }
@@ -182,56 +146,54 @@ void vpPlaceSearch::hypothesise(size_t i, size_t first, size_t j, size_t second)
 //! Finds the other lamps of a place, fits it to all of them, and keeps it where it may matter.
 void vpPlaceSearch::settle(Place &place)
 {
-  // Two lamps fewer than another place: e to minus two gains, and never an answer.
-  const size_t needed = std::max(m_model.fewest(), m_most - std::min<size_t>(m_most, 1));
-  if (!gather(place, needed)) {
-    return;
-  }
-  static const int rounds = 2; // lamps that the pair alone expected too far away, or too near
+  static const int rounds = 3; // the pair alone may expect lamps too far away, or too near
   for (int round = 0; round < rounds; ++round) {
-    if (!m_model.refine(place) || !gather(place, needed)) {
+    if (!gather(place)) {
       return;
     }
+    const Fit fit = fitOf(place);
+    place.camera += Complex(fit.step.x(), fit.step.y());
+    place.height += fit.step.z();
+    place.heading *= std::polar(1.0, fit.step.w());
   }
-  if (m_model.refine(place) && m_model.withinBounds(place, 0)) {
+  if (std::abs(place.height - m_bounds.height) <= gate * m_bounds.heightSigma &&
+      (m_bounds.anywhere || m_bounds.near(place))) {
     m_most = std::max(m_most, place.count);
-    m_model.judge(place);
+    place.logEvidence = logEvidence(place);
     keep(place);
   }
 }
 
 //! For each region the lamp that fits best, each lamp once. False, and nothing changed, where these are fewer
-//! than \e needed.
-bool vpPlaceSearch::gather(Place &place, size_t needed) const
+//! than needed.
+bool vpPlaceSearch::gather(Place &place) const
 {
-  const Fit fit = m_model.fitOf(place);
+  const Fit fit = fitOf(place);
   std::vector<double> distances(m_seen.size());
   std::vector<size_t> lamps(m_seen.size(), noLamp);
   size_t count = 0;
-  for (size_t i = 0; i < m_seen.size() && count + (m_seen.size() - i) >= needed; ++i) {
-    const double doubt = place.lamps[i] != noLamp ? 0 : m_model.poseVariance(fit, i);
+  for (size_t i = 0; i < m_seen.size() && count + m_seen.size() - i >= needed(); ++i) {
     double best = -std::numeric_limits<double>::infinity();
-    for (const vpSeenLamp::Option &option : m_seen[i].options) {
-      m_model.lampsNear(place, i, option, doubt, m_near);
-      for (size_t lamp : m_near) {
-        const double d = m_model.distance(place, i, lamp, doubt);
-        if (option.weight - 0.5 * d > best) {
-          best = option.weight - 0.5 * d;
-          lamps[i] = lamp;
-          distances[i] = d;
-        }
-      }
+    visitLamps(place, i, place.lamps[i] != noLamp ? 0 : poseVariance(place, fit, i),
+               [&](size_t lamp, const vpSeenLamp::Option &option, double d) {
+                 if (option.weight - 0.5 * d > best) {
+                   best = option.weight - 0.5 * d;
+                   lamps[i] = lamp;
+                   distances[i] = d;
+                 }
+               });
+    if (lamps[i] == noLamp) {
+      continue;
     }
     // Of a lamp and its reflection the one that is nearer to where the lamp hangs.
-    const auto rival = std::find(lamps.begin(), lamps.begin() + static_cast<long>(i), lamps[i]);
-    const size_t other = static_cast<size_t>(rival - lamps.begin());
-    if (lamps[i] != noLamp && other < i) {
-      lamps[distances[i] < distances[other] ? other : i] = noLamp;
-    } else if (lamps[i] != noLamp) {
+    const size_t rival = static_cast<size_t>(std::find(lamps.begin(), lamps.end(), lamps[i]) - lamps.begin());
+    if (rival < i) {
+      lamps[distances[i] < distances[rival] ? rival : i] = noLamp;
+    } else {
       ++count;
     }
   }
-  if (count < needed) {
+  if (count < needed()) {
     return false;
   }
   place.lamps = lamps;
@@ -239,8 +201,10 @@ bool vpPlaceSearch::gather(Place &place, size_t needed) const
   return true;
 }
 
+//! Two places that share two lamps and are near each other are one.
 void vpPlaceSearch::keep(const Place &place)
 {
+  static const double near = 0.5; // m: two lamps that fit alike fix the pose far better
   double best = place.logEvidence;
   for (Place &known : m_places) {
     best = std::max(best, known.logEvidence);
@@ -248,7 +212,6 @@ void vpPlaceSearch::keep(const Place &place)
     for (size_t i = 0; i < m_seen.size(); ++i) {
       shared += place.lamps[i] != noLamp && place.lamps[i] == known.lamps[i];
     }
-    static const double near = 0.5; // m: two lamps that fit alike fix the pose far better
     if (shared >= 2 && std::abs(known.camera - place.camera) < near) {
       if (place.logEvidence > known.logEvidence) {
         known = place;
@@ -256,40 +219,15 @@ void vpPlaceSearch::keep(const Place &place)
       return;
     }
   }
-  if (place.logEvidence < best - negligible) {
-    return;
-  }
+  m_places.push_back(place);
   m_places.erase(std::remove_if(m_places.begin(), m_places.end(),
                                 [&](const Place &known) { return known.logEvidence < best - negligible; }),
                  m_places.end());
-  m_places.push_back(place);
-}
-
-//! Whether another region may be the lamp of region \e i nearly as well, or that region another lamp.
-bool vpPlaceSearch::mistakable(const Place &place, const Fit &fit, size_t i) const
-{
-  const double limit = m_model.distance(place, i, place.lamps[i], 0) + 2 * std::log(m_settings.minOdds);
-  for (size_t j = 0; j < m_seen.size(); ++j) {
-    if (j != i && place.lamps[j] != noLamp) {
-      continue;
-    }
-    const double doubt = m_model.poseVariance(fit, j);
-    for (const vpSeenLamp::Option &option : m_seen[j].options) {
-      m_model.lampsNear(place, j, option, doubt, m_near);
-      for (size_t lamp : m_near) {
-        const bool used = std::find(place.lamps.begin(), place.lamps.end(), lamp) != place.lamps.end();
-        if ((j == i ? !used : lamp == place.lamps[i]) && m_model.distance(place, j, lamp, doubt) < limit) {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
 }
 
 double vpPlaceSearch::odds(const Place &place) const
 {
-  double against = std::exp(m_model.chance() - place.logEvidence);
+  double against = std::exp(chance() - place.logEvidence);
   for (const Place &other : m_places) {
     against += &other == &place ? 0 : std::exp(other.logEvidence - place.logEvidence);
   }
@@ -298,13 +236,57 @@ double vpPlaceSearch::odds(const Place &place) const
 
 bool vpPlaceSearch::decided() const
 {
-  return m_allowed && !m_places.empty() && odds(m_places[0]) >= m_settings.minOdds &&
-         !m_model.tooFewOnALine(m_places[0]);
+  return m_complete && !m_places.empty() && odds(m_places[0]) >= m_settings.minOdds &&
+         !tooFewOnALine(m_places[0]);
+}
+
+/*!
+  Lamps on one line look the same in a mirror: seen in a glass wall, they would put the robot behind it. So
+  they are no place where more than a quarter of the regions stays unexplained.
+*/
+bool vpPlaceSearch::tooFewOnALine(const Place &place) const
+{
+  if (4 * place.count >= 3 * m_seen.size()) {
+    return false;
+  }
+  // Weighted moments of the points: the sums of squared deviations along and across the line are half the sum
+  // and half the difference of |d|^2 and |d^2|.
+  double weight = 0, norms = 0;
+  Complex sum, squares;
+  for (size_t i = 0; i < m_seen.size(); ++i) {
+    if (place.lamps[i] != noLamp) {
+      const vpLampIndex::Lamp &lamp = m_index.lamp(place.lamps[i]);
+      const double w = 1 / variance(i, lamp.positionSigma, lamp.height - place.height);
+      const Complex off = expected(place, i, lamp.height) - place.camera;
+      weight += w;
+      sum += w * off;
+      norms += w * std::norm(off);
+      squares += w * off * off;
+    }
+  }
+  const double across = 0.5 * (norms - std::norm(sum) / weight - std::abs(squares - sum * sum / weight));
+  return across < square(gate) * static_cast<double>(place.count);
+}
+
+//! Whether another region may be the lamp of region \e i nearly as well, or that region another lamp.
+bool vpPlaceSearch::mistakable(const Place &place, const Fit &fit, size_t i) const
+{
+  const double limit = distance(place, i, place.lamps[i], 0) + 2 * std::log(m_settings.minOdds);
+  bool found = false;
+  for (size_t j = 0; j < m_seen.size(); ++j) {
+    if (j == i || place.lamps[j] == noLamp) {
+      visitLamps(place, j, poseVariance(place, fit, j),
+                 [&](size_t lamp, const vpSeenLamp::Option &, double d) {
+                   found |= d < limit && (j == i ? !has(place.lamps, lamp) : lamp == place.lamps[i]);
+                 });
+    }
+  }
+  return found;
 }
 
 vpPlaceSearch::Place vpPlaceSearch::withoutUndecided(const Place &place) const
 {
-  const Fit fit = m_model.fitOf(place);
+  const Fit fit = fitOf(place);
   Place decided = place;
   for (size_t i = 0; i < m_seen.size(); ++i) {
     if (place.lamps[i] != noLamp && mistakable(place, fit, i)) {
@@ -313,6 +295,115 @@ vpPlaceSearch::Place vpPlaceSearch::withoutUndecided(const Place &place) const
     }
   }
   return decided;
+}
+
+//! Calls visit(lamp, option, distance) with each lamp that region \e i may be and that hangs where its ray
+//! leads. \param poseVariance Of the point that the ray leads to, m^2.
+template <class Visit>
+void vpPlaceSearch::visitLamps(const Place &place, size_t i, double poseVariance, const Visit &visit) const
+{
+  const double middle = 0.5 * (m_index.lowest() + m_index.highest());
+  const double radius =
+      gate *
+          std::sqrt(variance(i, m_index.greatestSigma(), m_index.highest() - place.height) + poseVariance) +
+      (m_index.highest() - middle) * std::abs(m_seen[i].ray);
+  for (const vpSeenLamp::Option &option : m_seen[i].options) {
+    within(option, expected(place, i, middle), radius, m_near);
+    for (size_t lamp : m_near) {
+      const double d = distance(place, i, lamp, poseVariance);
+      if (d <= square(gate)) {
+        visit(lamp, option, d);
+      }
+    }
+  }
+}
+
+//! Where the ray of region \e i meets the height of a lamp, m.
+vpPlaceSearch::Complex vpPlaceSearch::expected(const Place &place, size_t i, double lampHeight) const
+{
+  return place.camera + (lampHeight - place.height) * place.heading * m_seen[i].ray;
+}
+
+//! Of the distance between a lamp and the point that the ray of region \e i leads to, in each direction, m^2.
+double vpPlaceSearch::variance(size_t i, double positionSigma, double depth) const
+{
+  return square(std::max(positionSigma, m_settings.mapTolerance)) + square(depth) * m_seen[i].variance;
+}
+
+//! Squared, in standard deviations.
+double vpPlaceSearch::distance(const Place &place, size_t i, size_t lamp, double poseVariance) const
+{
+  const vpLampIndex::Lamp &known = m_index.lamp(lamp);
+  return std::norm(known.place - expected(place, i, known.height)) /
+         (variance(i, known.positionSigma, known.height - place.height) + poseVariance);
+}
+
+//! Derivative of expected() by x, y, z and yaw.
+Eigen::Matrix<double, 2, 4> vpPlaceSearch::byPose(const Place &place, size_t i, double lampHeight) const
+{
+  const Complex ray = place.heading * m_seen[i].ray, arm = (lampHeight - place.height) * ray;
+  Eigen::Matrix<double, 2, 4> J;
+  J << 1, 0, -ray.real(), -arm.imag(), 0, 1, -ray.imag(), arm.real();
+  return J;
+}
+
+vpPlaceSearch::Fit vpPlaceSearch::fitOf(const Place &place) const
+{
+  const double prior = 1 / square(m_bounds.heightSigma);
+  Eigen::Matrix4d information = Eigen::Vector4d(0, 0, prior, 0).asDiagonal();
+  Eigen::Vector4d gradient(0, 0, prior * (m_bounds.height - place.height), 0);
+  for (size_t i = 0; i < m_seen.size(); ++i) {
+    if (place.lamps[i] != noLamp) {
+      const vpLampIndex::Lamp &lamp = m_index.lamp(place.lamps[i]);
+      const Complex off = lamp.place - expected(place, i, lamp.height);
+      const Eigen::Matrix<double, 2, 4> J = byPose(place, i, lamp.height);
+      const Eigen::Matrix<double, 2, 4> weighted =
+          J / variance(i, lamp.positionSigma, lamp.height - place.height);
+      information += weighted.transpose() * J;
+      gradient += weighted.transpose() * Eigen::Vector2d(off.real(), off.imag());
+    }
+  }
+  Fit fit;
+  fit.covariance = information.inverse();
+  fit.step = fit.covariance * gradient;
+  return fit;
+}
+
+//! Of the point that the ray of region \e i leads to, in each direction, m^2.
+double vpPlaceSearch::poseVariance(const Place &place, const Fit &fit, size_t i) const
+{
+  const Eigen::Matrix<double, 2, 4> J = byPose(place, i, 0.5 * (m_index.lowest() + m_index.highest()));
+  return 0.5 * (J * fit.covariance * J.transpose()).trace();
+}
+
+double vpPlaceSearch::logEvidence(const Place &place) const
+{
+  double sum = 0;
+  for (size_t i = 0; i < m_seen.size(); ++i) {
+    if (place.lamps[i] != noLamp) {
+      const vpLampIndex::Lamp &lamp = m_index.lamp(place.lamps[i]);
+      const double depth = lamp.height - place.height;
+      sum += m_seen[i].option(lamp)->weight + std::log(m_area / m_settings.strangers) -
+             0.5 * distance(place, i, place.lamps[i], 0) +
+             std::log(square(depth) / (2 * M_PI * variance(i, lamp.positionSigma, depth)));
+    }
+  }
+  const double sigma = m_bounds.heightSigma;
+  const double room =
+      m_bounds.anywhere ? m_index.area(m_index.highest() - place.height) : M_PI * square(m_bounds.reach);
+  const double prior = -std::log(room * 2 * m_bounds.turn * std::sqrt(2 * M_PI) * sigma) -
+                       0.5 * square((place.height - m_bounds.height) / sigma);
+  const double volume = 2 * std::log(2 * M_PI) + 0.5 * std::log(fitOf(place).covariance.determinant());
+  return sum + prior + volume;
+}
+
+//! Log of the evidence that one region shows a lamp of the map, seen from anywhere, and all others strangers:
+//! what a place that rests on chance has to be held against.
+double vpPlaceSearch::chance() const
+{
+  const double depth = std::max(0.0, 0.5 * (m_index.lowest() + m_index.highest()) - m_bounds.height);
+  const double inView = static_cast<double>(m_index.size()) * square(depth) * m_area / m_index.area(depth);
+  return std::log(1 + static_cast<double>(m_seen.size()) * inView / m_settings.strangers);
 }
 
 END_VISP_NAMESPACE

@@ -10,7 +10,7 @@
 
 #include <Eigen/LU>
 
-#include "vpLampGeometry.h"
+#include "vpLampPicture.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -40,8 +40,8 @@ bool bends(const std::vector<vpPoseHypothesis::Verdict> &verdicts)
 } // namespace
 
 vpPoseHypothesis::vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses,
-                                   const vpLampTrust &trust)
-    : filter(filter), trust(trust), m_hypotheses(hypotheses), m_modes(hypotheses),
+                                   const vpLampHistory &history)
+    : filter(filter), history(history), m_hypotheses(hypotheses), m_modes(hypotheses),
       m_passes(vpMotionModes::count, Pass{filter, {}, 0}), m_apart{filter, filter}, m_there(filter),
       m_before(filter), m_apartBefore{filter, filter}, m_modesBefore(hypotheses)
 {
@@ -49,7 +49,7 @@ vpPoseHypothesis::vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypothe
 
 void vpPoseHypothesis::begin(const vpLampFrame &frame, bool isFirst)
 {
-  trust.forgetPlaces();
+  history.forgetPlaces();
   for (const vpFrameLamp &lamp : frame.lamps) { // others than those that agree with each other are left out
     m_changes.push_back(lamp.seen->accepted ? "" : lamp.seen->remark);
   }
@@ -207,19 +207,19 @@ void vpPoseHypothesis::correct(const vpLampFrame &frame, double least, Pass &pas
 vpPoseHypothesis::Verdict vpPoseHypothesis::judge(const vpLamp &lamp, bool asLarge, vpLampSight &sight,
                                                   const vpVlpFilter &filter, double logUniform) const
 {
-  const double stranger = trust.doubts(lamp) ? m_hypotheses.staying : m_hypotheses.stranger;
+  const double stranger = history.isStranger(lamp) ? m_hypotheses.staying : m_hypotheses.stranger;
   const double other = std::log(stranger) + logUniform;
   Verdict verdict;
-  verdict.wasStranger = trust.doubts(lamp);
+  verdict.wasStranger = history.isStranger(lamp);
   verdict.logLikelihood = other;
-  const Eigen::Vector2d offset = trust.offset(lamp);
+  const Eigen::Vector2d offset = history.offset(lamp);
   sight.covariance += offset * offset.transpose();
   verdict.innovation = filter.innovation(sight);
   const vpVlpFilter::Innovation &seen = verdict.innovation;
   if (!seen.inFront || !asLarge) {
     return verdict;
   }
-  const double tolerance = trust.tolerance(lamp) / seen.depth,
+  const double tolerance = history.tolerance(lamp) / seen.depth,
                displaced = (1 - stranger) * m_hypotheses.displaced;
   const Eigen::Matrix2d anyOffset = tolerance * tolerance * Eigen::Matrix2d::Identity();
   const double exact = std::log(1 - stranger - displaced) + logNormal(seen.ray, seen.covariance),
@@ -237,7 +237,7 @@ void vpPoseHypothesis::compare(const vpLampFrame &frame)
 {
   m_changes.clear();
   for (const vpFrameLamp &lamp : frame.lamps) {
-    m_changes.push_back(trust.changed(*lamp.lamp, *lamp.seen, expectedExtent(frame, *lamp.lamp)));
+    m_changes.push_back(history.changed(*lamp.lamp, *lamp.seen, expectedExtent(frame, *lamp.lamp)));
   }
 }
 
@@ -247,9 +247,9 @@ void vpPoseHypothesis::learn(const vpLampFrame &frame)
   for (size_t k = 0; k < frame.lamps.size(); ++k) {
     const vpFrameLamp &lamp = frame.lamps[k];
     if (verdicts[k].accepted) {
-      trust.believe(*lamp.lamp, *lamp.seen, verdicts[k].innovation, expectedExtent(frame, *lamp.lamp));
+      history.add(*lamp.lamp, *lamp.seen, verdicts[k].innovation, expectedExtent(frame, *lamp.lamp));
     } else if (m_changes[k].empty()) {
-      trust.doubtPlace(*lamp.lamp, true);
+      history.setStranger(*lamp.lamp, true);
     }
   }
 }
@@ -261,7 +261,8 @@ vpLampExtent vpPoseHypothesis::expectedExtent(const vpLampFrame &frame, const vp
   const Eigen::Matrix3d open = filter.velocityCovariance();
   const double height = lamp.position.z() - pose.wtc.z(), apart = (lamp.position - pose.wtc).head<2>().norm();
   const double speed = std::sqrt(std::max(open(0, 0), open(1, 1))) + apart * std::sqrt(open(2, 2));
-  return {vpLampTrust::extentOf(lamp, pose.wMb, filter.velocity(), *frame.rig, frame.lineTime),
+  return {vpLampPicture(lamp, {pose.wMb.linear(), pose.wMb.translation()}, *frame.rig)
+              .extent(filter.velocity(), frame.lineTime),
           frame.rig->camera.get_px() * speed / std::max(height, 1e-3) * std::abs(frame.lineTime)};
 }
 
@@ -274,7 +275,7 @@ vpPoseHypothesis vpPoseHypothesis::coasted(const vpLampFrame &frame) const
   other.m_changes.assign(frame.lamps.size(), misplaced);
   other.m_logLikelihood = other.weigh(frame, m_since);
   for (const vpFrameLamp &lamp : frame.lamps) {
-    other.trust.doubtPlace(*lamp.lamp, true);
+    other.history.setStranger(*lamp.lamp, true);
   }
   return other;
 }

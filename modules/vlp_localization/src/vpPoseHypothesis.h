@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "vpLampFrame.h"
-#include "vpLampTrust.h"
+#include "vpLampHistory.h"
 #include "vpMotionModes.h"
 
 BEGIN_VISP_NAMESPACE
@@ -31,7 +31,8 @@ public:
   };
 
   //! \param filter Its settings and odometry.
-  vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses, const vpLampTrust &trust);
+  vpPoseHypothesis(const vpVlpFilter &filter, const vpVlpHypotheses &hypotheses,
+                   const vpLampHistory &history);
 
   //! Begins with a frame, at the pose at which the filter was started. \param isFirst There was no place: the
   //! odometry tells how the robot moves. Else what is wrong may be the odometry.
@@ -60,7 +61,7 @@ public:
   double information() const { return m_modes.information(); }
 
   vpVlpFilter filter;
-  vpLampTrust trust;
+  vpLampHistory history;
   double logWeight = 0;
   int frames = 0;       // followed
   double asked = 0;     // information() at which it is compared with wider claims next

@@ -20,7 +20,7 @@ public:
   bool empty() const { return m_places.empty(); }
   const vpPoseHypothesis &likeliest() const { return m_places.front(); }
   //! What is known of lamps, wherever the robot is.
-  const vpLampTrust &lamps() const { return empty() ? m_lamps : likeliest().trust; }
+  const vpLampHistory &lamps() const { return empty() ? m_lamps : likeliest().history; }
 
   //! Nothing is known of the robot any more, and of the lamps how large they are.
   void lose();
@@ -53,7 +53,7 @@ private:
   static bool agree(const vpPoseHypothesis &place, const vpPoseHypothesis &other);
 
   std::vector<vpPoseHypothesis> m_places; // the likeliest first
-  vpLampTrust m_lamps;                    // where there is no place
+  vpLampHistory m_lamps;                  // where there is no place
 };
 
 END_VISP_NAMESPACE

@@ -48,7 +48,8 @@ public:
   //! found again.
   Minimum minimise(const vpBasePose &start, int rounds = 3) const;
 
-  //! Covariance of wMb at a minimum, without mountDoubt(). False where the lamps do not determine the pose.
+  //! Covariance of wMb at a minimum, without mountCovariance(). False where the lamps do not determine the
+  //! pose.
   bool covariance(const vpBasePose &pose, vpMatrix6d &covariance) const;
 
   //! Residuals less parameters.
@@ -61,24 +62,22 @@ private:
   using Parameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
   using Cholesky = Eigen::LLT<Eigen::MatrixXd>;
   struct Linear {
-    bool inFront = true;      // all lamps; else the rest is not complete
-    Eigen::VectorXd residual; // r
-    Rows6 byBase;             // derivative of the prediction, columns as of vpPredictedRay
-    Eigen::MatrixXd doubt;    // S, where asked for
+    bool inFront = true;        // all lamps; else the rest is not complete
+    Eigen::VectorXd residual;   // r
+    Rows6 byBase;               // derivative of the prediction, columns as of vpPredictedRay
+    Eigen::MatrixXd covariance; // S, where asked for
   };
 
   int rows() const;
-  Linear linearise(const vpBasePose &pose, bool withDoubt) const;
+  Linear linearise(const vpBasePose &pose, bool withCovariance) const;
   void addTiltPrior(Linear &linear, const vpBasePose &pose) const;
-  Columns parameterColumns(const Rows6 &byBase) const;
-  Eigen::Matrix<double, 6, 1> step(const Parameters &parameters) const;
   bool descend(Minimum &minimum, const Cholesky &S) const;
 
   const std::vector<vpLampSight> &m_lamps;
   const vpMountFrame &m_mount;
-  const bool m_tiltInDoubt; // level: roll and pitch belong to S
-  const bool m_six;         // parameters
-  bool m_fixedDoubt = true; // S is the same at all poses
+  const bool m_level;                  // level: roll and pitch belong to S
+  const std::vector<int> m_parameters; // columns of vpPredictedRay
+  bool m_fixedCovariance = true;       // S is the same at all poses
 };
 
 END_VISP_NAMESPACE

@@ -9,9 +9,9 @@
 #include <limits>
 #include <sstream>
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 
-#include "vpLampGeometry.h"
+#include "vpRayFit.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -22,14 +22,6 @@ const double samePlace = 1e-6; // m in the map, and normalised units in the pict
 std::string both(const vpLampSight &first, const vpLampSight &second)
 {
   return "lamps " + first.id + " and " + second.id;
-}
-
-std::string degrees(double angle)
-{
-  std::ostringstream text;
-  text.precision(2);
-  text << angle * 180 / M_PI << " degrees";
-  return text.str();
 }
 
 // Distance in the picture over its standard deviation along the line between the two image points.
@@ -48,10 +40,6 @@ std::string pairProblem(const vpLampSight &first, const vpLampSight &second, con
     return both(first, second) + (std::abs(pair.rise) < samePlace
                                       ? " have the same place in the map"
                                       : " hang one above the other: they do not show the heading");
-  for (int k = 0; k < 2; ++k)
-    if (!pair.aboveHorizon[k])
-      return "lamp " + (k ? second : first).id +
-             ": its ray does not point above the horizon; is the rig's mount rotation right?";
   if ((second.ray - first.ray).norm() < samePlace)
     return both(first, second) + " have the same place in the picture";
   const double sigmas = separation(first, second);
@@ -65,35 +53,8 @@ std::string pairProblem(const vpLampSight &first, const vpLampSight &second, con
   return "";
 }
 
-// Covariance of wMb without mountDoubt(). False where the pose is not determined.
-bool pairCovariance(const std::vector<vpLampSight> &lamps, const vpBasePose &pose, const vpMountFrame &mount,
-                    vpMatrix6d &covariance)
-{
-  Eigen::Matrix<double, Eigen::Dynamic, 6> byBase(4, 6);
-  Eigen::VectorXd rays(4);
-  Eigen::Matrix4d S = Eigen::Matrix4d::Zero();
-  for (int k = 0; k < 2; ++k) {
-    const vpPredictedRay predicted = predictRay(lamps[k].position, pose, mount);
-    if (!predicted.inFront)
-      return false;
-    byBase.middleRows<2>(2 * k) = predicted.derivative;
-    rays.segment<2>(2 * k) = predicted.ray;
-    S.block<2, 2>(2 * k, 2 * k) = rayDoubt(lamps[k], predicted);
-  }
-  Eigen::Matrix4d J;
-  J << byBase.leftCols<3>(), byBase.col(5);
-  const Eigen::FullPivLU<Eigen::Matrix4d> lu(J);
-  if (!(lu.rcond() > 1e-12))
-    return false;
-  const Eigen::Matrix2d tilt = tiltDoubt(pose, mount);
-  const Eigen::MatrixXd byTilt = byCameraTilt(byBase, pose, mount);
-  S += byTilt * tilt * byTilt.transpose() + lensDoubt(rays, mount);
-  covariance = levelCovariance(lu.inverse(), S, byTilt, tilt);
-  return covariance.allFinite();
-}
-
 // Refusal where the pair leaves height or heading too uncertain; empty where it does not.
-std::string doubtProblem(const vpLampSight &first, const vpLampSight &second, double height,
+std::string sigmaProblem(const vpLampSight &first, const vpLampSight &second, double height,
                          const vpMatrix6d &covariance, double limit)
 {
   const double sigma = std::sqrt(covariance(2, 2)) / height;
@@ -115,11 +76,18 @@ vpVlpFix vpTwoLampSolver::solve(const vpLampSight &first, const vpLampSight &sec
 {
   const std::vector<vpLampSight> lamps = {first, second};
   const vpMountFrame mount(rig);
-  const Eigen::Matrix3d level = Eigen::Matrix3d::Identity(); // the base stands level
   std::string problem = sightProblem(lamps);
   if (!problem.empty())
     return refusedFix(problem);
-  const vpLampPair pair(first, second, mount, level);
+  const Eigen::Vector3d step = second.position - first.position;
+  vpLampPair pair{{step.x(), step.y()}, step.z(), {}};
+  for (int k = 0; k < 2; ++k) {
+    const vpUprightRay upright(lamps[k].ray, mount);
+    if (!upright.aboveHorizon)
+      return refusedFix("lamp " + lamps[k].id +
+                        ": its ray does not point above the horizon; is the rig's mount rotation right?");
+    pair.rays[k] = upright.value;
+  }
   problem = pairProblem(first, second, pair, minImageSeparation);
   if (!problem.empty())
     return refusedFix(problem);
@@ -132,20 +100,24 @@ vpVlpFix vpTwoLampSolver::solve(const vpLampSight &first, const vpLampSight &sec
     return refusedFix(both(first, second) + ": the camera would have to be above them");
   // The robot drives on z = 0: of two heights the one that puts its base nearer to there.
   std::vector<vpBasePose> poses;
-  for (double H : heights)
-    poses.push_back(pair.pose(H, first, mount, level));
+  for (double H : heights) {
+    const Eigen::AngleAxisd turn(pair.heading(H), Eigen::Vector3d::UnitZ());
+    const std::complex<double> way = H * std::polar(1.0, turn.angle()) * pair.rays[0];
+    const Eigen::Vector3d camera = first.position - Eigen::Vector3d(way.real(), way.imag(), H);
+    poses.push_back({turn.matrix(), camera - turn * mount.btc});
+  }
   if (poses.size() == 2 && std::abs(poses[1].wtb.z()) < std::abs(poses[0].wtb.z())) {
     std::swap(poses[0], poses[1]);
     std::swap(heights[0], heights[1]);
   }
 
   vpVlpFix fix;
-  if (!pairCovariance(lamps, poses[0], mount, fix.covariance))
+  if (!vpRayFit(lamps, mount, vpRayFit::Kind::level).covariance(poses[0], fix.covariance))
     return refusedFix(both(first, second) + " do not determine the pose");
-  problem = doubtProblem(first, second, heights[0] + pair.rise / 2, fix.covariance, maxRelativeSigma);
+  problem = sigmaProblem(first, second, heights[0] + pair.rise / 2, fix.covariance, maxRelativeSigma);
   if (!problem.empty())
     return refusedFix(problem);
-  fix.covariance += mountDoubt(poses[0], mount);
+  fix.covariance += mountCovariance(poses[0], mount);
   describeFix(fix, lamps, poses[0], rig);
   fix.ambiguous = poses.size() == 2;
   if (fix.ambiguous)

@@ -44,7 +44,7 @@ vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations,
   }
   std::vector<size_t> which;
   std::copy_if(usable.begin(), usable.end(), std::back_inserter(which),
-               [&](size_t i) { return lamps[i] == nullptr || !m_places->lamps().doubts(*lamps[i]); });
+               [&](size_t i) { return lamps[i] == nullptr || !m_places->lamps().isStranger(*lamps[i]); });
   static const size_t enough = 3; // of which one bears the others out
   if (which.size() < enough) {
     which = usable;
@@ -100,11 +100,11 @@ vpPoseHypothesis vpVlpLocalizer::placeAt(const vpVlpFix &fix, const vpLampFrame 
   if (wider) {
     start.doubtClaims();
   }
-  vpLampTrust lamps = m_places->lamps();
+  vpLampHistory lamps = m_places->lamps();
   lamps.mapTolerance = mapTolerance;
   for (const vpFrameLamp &lamp : frame.lamps) {
     if (lamp.seen->accepted || lamp.seen->remark == vpLampConsensus::elsewhere) {
-      lamps.doubtPlace(*lamp.lamp, !lamp.seen->accepted);
+      lamps.setStranger(*lamp.lamp, !lamp.seen->accepted);
     }
   }
   start.start(fix.wMb, frame.timestamp);

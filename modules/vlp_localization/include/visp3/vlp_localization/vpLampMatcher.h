@@ -57,8 +57,9 @@ struct VISP_EXPORT vpLampMatch {
 
   Under the mount's attitude two lamps give the pose in closed form (vpTwoLampSolver). Every pair of lamps of
   the map that two regions may show, whose distance fits that of the regions in the picture and the height of
-  the camera, is a hypothesis; a spatial index finds these pairs, and then for each other region the lamp that
-  its ray leads to. A least-squares fit over the lamps found so says how likely the picture is from there:
+  the camera, is a hypothesis; an index by identifier and place finds these pairs, and then for each other
+  region the lamp that its ray leads to. A least-squares fit over the lamps found so says how likely the
+  picture is from there:
 
     log E = sum over its lamps of [log(p N / n) + log(A / strangers) + log density of the residual]
             + log of the pose's prior density and of the volume of poses that fit (Laplace's approximation),
@@ -78,11 +79,6 @@ struct VISP_EXPORT vpLampMatch {
 class VISP_EXPORT vpLampMatcher
 {
 public:
-  enum class Search {
-    index, //!< a spatial index over the lamps
-    scan   //!< every lamp compared each time: what tests and benchmarks hold the index against
-  };
-
   double mapTolerance = 0.03;   // m, how far lamps may hang from where the map says, standard deviation
   double tiltTolerance = 0.01;  // rad, how far the robot may lean where the rig states less, likewise
   double baseHeight = 0;        // m, z of the robot's base: it stands on the floor
@@ -92,7 +88,7 @@ public:
   double minShare = 0.6;        // share of the regions that a place has to explain, and two at least
   size_t maxHypotheses = 20000; // places to look at before the picture counts as ambiguous
 
-  vpLampMatcher(const vpVlpRig &rig, const vpLampMap &map, Search search = Search::index);
+  vpLampMatcher(const vpVlpRig &rig, const vpLampMap &map);
 
   /*!
     Tells which lamps \e observations show, of which those at the indices \e usable take part. An observation

@@ -34,8 +34,8 @@ public:
     Mount attitude: starts from vpTwoLampSolver::solveBestPair, whose refusals it passes on, and from its
     second pose where there is one. Two lamps: that pair's fix.
 
-    Free attitude: starts from attitudes all over the cone of maxTilt and from each pose found, mirrored at
-    the line of sight, and compares all minima with every lamp in front of the camera. Three lamps fit up to
+    Free attitude: starts from all poses that each three lamps in a row leave, and compares all minima with
+    every lamp in front of the camera. Three lamps fit up to
     four poses exactly; a flat group seen almost head-on has two that hardly differ. What the rig's
     rotationSigma says of roll and pitch is a prior of estimate and comparison. Without it, of poses that
     the picture does not tell apart the most upright one is the fix, the next one `other`. A tilt that the

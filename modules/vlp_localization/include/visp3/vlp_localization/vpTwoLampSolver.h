@@ -26,7 +26,7 @@ class VISP_EXPORT vpTwoLampSolver
 public:
   /*!
     Refuses a pair that leaves the height above the camera less certain than this share of it, or the heading
-    less certain than this (rad). Under lamps of one height, seen without other doubt, the two are the same
+    less certain than this (rad). Under lamps of one height, seen without other errors, the two are the same
     number.
   */
   double maxRelativeSigma = 0.1;

@@ -41,13 +41,13 @@ struct VISP_EXPORT vpVlpFix {
     Covariance of x, y, z (m) and roll, pitch, yaw (rad, small rotations about the fixed axes x, y, z of w)
     of wMb. In it: the lamps' image points, their positions in the map where the map states a sigma, and the
     mount where the rig states one: its translation, its yaw, and its roll and pitch (about x and y of b) as
-    the doubt of how far base and camera, rigid together, lean from the vertical. Roll and pitch that were
+    the variance of how far base and camera, rigid together, lean from the vertical. Roll and pitch that were
     taken from the rig have the rig's variance.
   */
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   std::vector<std::string> lamps;         // ids that the pose rests on
   std::vector<Eigen::Vector2d> residuals; // of each: ray measured minus ray predicted, normalised units
-  double chiSquare = 0;                   // of the residuals under all doubt that the covariance holds
+  double chiSquare = 0;                   // of the residuals under all errors that the covariance holds
   int degreesOfFreedom = 0;               // of chiSquare; 2 lamps with known attitude: 0
   bool ambiguous = false;                 // a second pose explains the picture as well: it is `other`
   vpHomogeneousMatrix other;              // wMb of the second pose
