@@ -83,6 +83,29 @@ bool vpLampHistory::isStranger(const vpLamp &lamp) const
   return past != nullptr && past->stranger;
 }
 
+void vpLampHistory::setStranger(const vpLamp &lamp, bool stranger)
+{
+  Past &past = m_past[lamp.id];
+  past.stranger = stranger;
+  past.away.reset();
+  past.strayed = 0;
+}
+
+double vpLampHistory::addStranger(const vpLamp &lamp, const Eigen::Matrix<double, 3, 2> &axes,
+                                  const vpVlpFilter::Innovation &innovation)
+{
+  Past &past = m_past[lamp.id];
+  const Eigen::Vector3d away = axes * innovation.ray;
+  past.stranger = true;
+  if (!past.away) {
+    past.away = away;
+  }
+  const Eigen::Vector2d moved = axes.transpose() * (away - *past.away) / axes.col(0).squaredNorm();
+  const double before = past.strayed;
+  past.strayed = std::max(before, 0.5 * moved.dot(innovation.covariance.inverse() * moved));
+  return past.strayed - before;
+}
+
 double vpLampHistory::tolerance(const vpLamp &lamp) const
 {
   const Past *past = find(lamp);
@@ -113,8 +136,8 @@ void vpLampHistory::forgetPlaces()
 void vpLampHistory::add(const vpLamp &lamp, const vpLampObservation &seen,
                         const vpVlpFilter::Innovation &innovation, const vpLampExtent &expected)
 {
+  setStranger(lamp, false);
   Past &past = m_past[lamp.id];
-  past.stranger = false;
   const double share = shareOf(++past.places);
   past.offset += share * (innovation.ray - past.offset);
   past.covariance = (1 - share) * (1 - share) * past.covariance + share * share * innovation.covariance;

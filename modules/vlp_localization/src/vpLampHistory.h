@@ -5,6 +5,7 @@
 #ifndef vpLampHistory_h
 #define vpLampHistory_h
 
+#include <optional>
 #include <string>
 #include <unordered_map>
 
@@ -49,16 +50,25 @@ public:
            const vpLampExtent &expected);
 
   //! Other lamps have, or have not, shown that it hangs elsewhere than the map says.
-  void setStranger(const vpLamp &lamp, bool stranger) { m_past[lamp.id].stranger = stranger; }
+  void setStranger(const vpLamp &lamp, bool stranger);
   //! Whether they have, and it was not seen in its place since.
   bool isStranger(const vpLamp &lamp) const;
+  /*!
+    Takes a stranger, which hangs still: as far from its lamp as it was first seen, m along x, y and z of w.
+    \param axes The camera's x and y, m in w at the lamp's depth, by which rays become ways. \return Nats by
+    which the frame makes this less likely than the frames before did.
+  */
+  double addStranger(const vpLamp &lamp, const Eigen::Matrix<double, 3, 2> &axes,
+                     const vpVlpFilter::Innovation &innovation);
   //! Where lamps were seen; how large they are stays known, and which are strangers.
   void forgetPlaces();
 
 private:
   struct Past {
     bool stranger = false;
-    int places = 0;                                       // frames that told its place
+    std::optional<Eigen::Vector3d> away; // m, of the stranger from the lamp, when it was first seen
+    double strayed = 0;                  // half the square of the most that it has moved since, in sigmas
+    int places = 0;                      // frames that told its place
     Eigen::Vector2d offset = Eigen::Vector2d::Zero();     // normalised units, running mean of the innovations
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // of that mean, were it 0
     int sizes = 0;                                        // frames that told its size

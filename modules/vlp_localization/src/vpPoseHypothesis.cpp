@@ -249,8 +249,18 @@ void vpPoseHypothesis::learn(const vpLampFrame &frame)
     if (verdicts[k].accepted) {
       history.add(*lamp.lamp, *lamp.seen, verdicts[k].innovation, expectedExtent(frame, *lamp.lamp));
     } else if (m_changes[k].empty()) {
-      history.setStranger(*lamp.lamp, true);
+      learnStranger(frame, k);
     }
+  }
+}
+
+void vpPoseHypothesis::learnStranger(const vpLampFrame &frame, size_t lamp)
+{
+  Verdict &verdict = verdicts[lamp];
+  if (verdict.innovation.inFront) {
+    const Eigen::Matrix3d wRc = filter.pose().wMb.linear() * vpMountFrame(*frame.rig).bRc;
+    verdict.strayed = history.addStranger(*frame.lamps[lamp].lamp,
+                                          verdict.innovation.depth * wRc.leftCols<2>(), verdict.innovation);
   }
 }
 
@@ -274,8 +284,8 @@ vpPoseHypothesis vpPoseHypothesis::coasted(const vpLampFrame &frame) const
   other.m_modes = m_modesBefore;
   other.m_changes.assign(frame.lamps.size(), misplaced);
   other.m_logLikelihood = other.weigh(frame, m_since);
-  for (const vpFrameLamp &lamp : frame.lamps) {
-    other.history.setStranger(*lamp.lamp, true);
+  for (size_t k = 0; k < frame.lamps.size(); ++k) {
+    other.learnStranger(frame, k);
   }
   return other;
 }

@@ -28,6 +28,7 @@ public:
     bool accepted = false;    // likelier the map's than not
     bool wasStranger = false; // in the frame before
     double logLikelihood = 0; // of the ray, whatever it is
+    double strayed = 0;       // nats, that a stranger does not hang still
   };
 
   //! \param filter Its settings and odometry.
@@ -83,6 +84,7 @@ private:
   size_t mix(vpVlpFilter &mixed, size_t first, size_t end) const;
   void compare(const vpLampFrame &frame);
   void learn(const vpLampFrame &frame);
+  void learnStranger(const vpLampFrame &frame, size_t lamp);
   vpLampExtent expectedExtent(const vpLampFrame &frame, const vpLamp &lamp) const;
 
   vpVlpHypotheses m_hypotheses;

@@ -33,7 +33,8 @@ void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry
     place.filter.takeOdometry(odometry);
     place.logWeight += place.follow(frame);
   }
-  // A stranger hangs still as well: from frame to frame it shows what a lamp in its place would.
+  // A stranger hangs still as well: from frame to frame it shows what a lamp in its place would, if the robot
+  // moves as this place has it.
   for (size_t k = 0; k < frame.lamps.size(); ++k) {
     double most = -1e300;
     for (const vpPoseHypothesis &place : m_places) {
@@ -42,7 +43,7 @@ void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry
     for (vpPoseHypothesis &place : m_places) {
       const vpPoseHypothesis::Verdict &verdict = place.verdicts[k];
       if (verdict.wasStranger && !verdict.accepted) {
-        place.logWeight += std::max(0.0, most - verdict.logLikelihood);
+        place.logWeight += std::max(0.0, most - verdict.strayed - verdict.logLikelihood);
       }
     }
   }

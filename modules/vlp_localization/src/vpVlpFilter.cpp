@@ -273,7 +273,7 @@ void vpVlpFilter::mirror()
     const bool considered = (column >= mount && column < mark0) || column >= lamps;
     double *out = m_P.data() + column * n;
     for (const auto &[from, until] : estimated) {
-      const Eigen::Index end = considered ? until : std::min<Eigen::Index>(until, column);
+      const Eigen::Index last = until, end = considered ? last : std::min(last, column);
       const double *in = m_P.data() + from * n + column;
       for (Eigen::Index row = from; row < end; ++row, in += n) {
         out[row] = *in;
