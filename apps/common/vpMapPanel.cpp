@@ -108,14 +108,14 @@ void drawLegend(cv::Mat &panel, int top, double unit)
 {
   const std::array<std::vector<std::pair<cv::Scalar, std::string>>, legendRows> rows = {
       {{{lampColours[0], "lamp counts"},
-        {lampColours[1], "seen, does not count"},
-        {lampColours[2], "not seen"}},
+        {lampColours[1], "seen, not counted"},
+        {lampColours[2], "not seen"},
+        {vpVlpColours::white, "3 sigma"}},
        {{vpVlpColours::ofState("fix"), "fix"},
         {vpVlpColours::ofState("tracking"), "tracking"},
         {vpVlpColours::ofState("coasting"), "coasting"},
         {vpVlpColours::ofState("relocated"), "relocated"},
-        {vpVlpColours::ofState("ambiguous"), "ambiguous"},
-        {vpVlpColours::white, "3 sigma"}}}};
+        {vpVlpColours::ofState("ambiguous"), "ambiguous"}}}};
   const int row = legendRow(unit), radius = cvRound(3.5 * unit), gap = cvRound(5 * unit);
   for (size_t i = 0; i < rows.size(); ++i) {
     int u = 2 * gap;

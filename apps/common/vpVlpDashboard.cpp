@@ -119,7 +119,7 @@ void drawStatus(cv::Mat &picture, const vpVlpLocation &location, double compute,
 
   const std::string state = vpStateOf(location);
   const std::string heading = !fix.valid           ? "no position"
-                              : fix.ambiguous      ? "ambiguous: a second pose fits as well"
+                              : fix.ambiguous      ? "ambiguous: two poses fit"
                               : location.relocated ? "relocated: not borne out yet"
                                                    : state;
   const int left = cvRound(10 * unit);
