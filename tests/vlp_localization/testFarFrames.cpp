@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
+#include "bench/vpSeenLamps.h"
 #include "hungLamps.h"
 #include "lampDrive.h"
 
@@ -121,6 +122,36 @@ TEST(FarFrames, FirstFrameUnderTwoLampsKnowsTheWayByOdometry)
     ASSERT_TRUE(fix.valid) << fix.refusal;
     EXPECT_TRUE(isAt(fix, path(0), 4)) << w;
     EXPECT_LT(std::hypot(fix.wMb[0][3] - path(0).x, fix.wMb[1][3] - path(0).y), 0.0005) << w;
+  }
+}
+
+// A place that the lamps' motion refutes is no place of two lamps that gave way to copies.
+TEST(FarFrames, OdometryOfTheWrongSignIsNoReasonForCopies)
+{
+  const vpPlannedDrive square(
+      {-0.15, -0.15, 0},
+      {{0.3, 0, 0}, {1.5, 0.2, 0}, {1.57, 0, 1}, {1.5, 0.2, 0}, {1.57, 0, 1}, {1.5, 0.2, 0}});
+  for (unsigned int seed = 0; seed < 100; ++seed) {
+    std::mt19937_64 generator(seed);
+    vpSeenLamps world(2);
+    vpVlpLocalizer localizer(world.rig, world.map);
+    const std::vector<vpOdometry> samples = square.odometry(0.02);
+    std::normal_distribution<double> normal;
+    size_t given = 0;
+    for (double t = 0; t < square.duration(); t += 1.0 / 12) {
+      for (; given < samples.size() && samples[given].timestamp <= t + 0.08; ++given) {
+        const vpOdometry &sample = samples[given];
+        localizer.filter.addOdometry(
+            {sample.timestamp, -sample.v - 0.002 * normal(generator), -sample.w - 0.003 * normal(generator)});
+      }
+      const auto place = [&square](double at) { return square.at(at); };
+      const vpVlpLocation location = localizer.locate(t, world.see(t, place, generator, {true, true}));
+      ASSERT_TRUE(location.fix.valid) << seed << ", " << t;
+      const double off =
+          std::hypot(location.fix.wMb[0][3] - square.at(t).x, location.fix.wMb[1][3] - square.at(t).y);
+      ASSERT_TRUE(off < 0.02 || location.fix.ambiguous || location.relocated)
+          << seed << ", " << t << ": " << off;
+    }
   }
 }
 
