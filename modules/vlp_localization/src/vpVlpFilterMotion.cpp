@@ -120,11 +120,15 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   for (int i : {vx, vy, w}) {
     m_P(i, i) += odometry == Odometry::followed ? square(i == w ? anyTurn : anySpeed) : 0;
   }
-  const Eigen::RowVector3d forward = Eigen::RowVector3d::UnitX(), turning = Eigen::RowVector3d::UnitZ();
+  const Eigen::RowVector3d forward = Eigen::RowVector3d::UnitX(), sideways = Eigen::RowVector3d::UnitY(),
+                           turning = Eigen::RowVector3d::UnitZ();
+  const double ahead = std::cos(m_x(wheels)), aside = std::sin(m_x(wheels)), scale = 1 + m_x(speedScale),
+               along = ahead * m_x(vx) + aside * m_x(vy), across = ahead * m_x(vy) - aside * m_x(vx);
   Derivative<3> H;
-  H.add(vx, (1 + m_x(speedScale)) * forward);
-  H.add(speedScale, m_x(vx) * forward);
-  H.add(vy, Eigen::RowVector3d::UnitY());
+  H.add(vx, scale * ahead * forward - aside * sideways);
+  H.add(vy, scale * aside * forward + ahead * sideways);
+  H.add(speedScale, along * forward);
+  H.add(wheels, scale * across * forward - along * sideways);
   H.add(w, (1 + m_x(turnScale)) * turning);
   H.add(turnScale, m_x(w) * turning);
   H.add(turnBias, turning);
@@ -138,9 +142,9 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   R(0, 0) = square(odometrySpeed) + square(share * sample.v) + square(within * (sample.v - before.v));
   R(1, 1) = square(sidewaysSpeed);
   R(2, 2) = square(odometryTurnRate) + square(share * sample.w) + square(within * (sample.w - before.w));
-  const Eigen::Vector3d innovation(sample.v - (1 + m_x(speedScale)) * m_x(vx), -m_x(vy),
+  const Eigen::Vector3d innovation(sample.v - scale * along, -across,
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
-  measure<3>(H, innovation - aside(H), R);
+  measure<3>(H, innovation - this->aside(H), R);
 }
 
 void vpVlpFilter::advance(double time)

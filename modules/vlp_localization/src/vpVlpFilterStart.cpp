@@ -58,6 +58,7 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   sigma(speedScale) = odometryScale;
   sigma(turnScale) = odometryTurnScale;
   sigma(turnBias) = odometryTurnBias;
+  sigma(wheels) = odometryHeading;
   sigma.segment<3>(mount) = m_rig.translationSigma;
   sigma(mount + 3) = m_rig.rotationSigma.z();
   const bool exact = m_tiltDoubt == 0 && m_rig.rotationSigma.isZero(0) && m_rig.translationSigma.isZero(0);

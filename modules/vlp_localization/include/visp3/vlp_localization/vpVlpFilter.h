@@ -83,6 +83,7 @@ public:
   double odometryScale = 0.02;     // standard deviation of the speed's scale: a slip that stays
   double odometryTurnScale = 0.01; // of the turn rate's scale
   double odometryTurnBias = 0.002; // rad/s, of the turn rate's bias
+  double odometryHeading = 0.03;   // rad, of the wheels' way ahead in b: the camera is turned on the robot
   double sidewaysSpeed = 0.002;    // m/s, standard deviation of the speed sideways, where there is odometry
   double principalPoint = 0.001;   // normalised units, standard deviation, of a rig that states one for its
                                    // mount and none for its lens
@@ -224,6 +225,7 @@ private:
     speedScale,
     turnScale,
     turnBias,
+    wheels,           // heading of what they call ahead, in b, rad
     mount,            // translation in b, m; heading about z of b
     lens = mount + 4, // principal point, in normalised coordinates; focal length, as a share
     mark0 = lens + 3, // x to pitch, at the mark
