@@ -154,6 +154,14 @@ void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
   }
 }
 
+void vpPoseMixture::settle(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpFilter &filter,
+                           vpVlpLocation &location)
+{
+  reduce(hypotheses);
+  filter = likeliest().filter;
+  tell(frame, hypotheses, location);
+}
+
 bool vpPoseMixture::isLost(const vpPoseHypothesis &place)
 {
   return place.filter.state(place.filter.pose()) == vpVlpFilter::State::lost;

@@ -39,16 +39,18 @@ public:
   //! The robot was put there with the latest frame. \param since s, since the frame before.
   void addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place, const vpVlpHypotheses &hypotheses,
                     double since);
-  //! Drops what is improbable, and sorts the rest.
-  void reduce(const vpVlpHypotheses &hypotheses);
   //! Whether all are so uncertain that they mean nothing.
   bool lost() const;
   //! Likewise at a time to come (s), had the robot started or stopped since.
   bool lostAt(double time) const;
-  //! The likeliest pose, its covariance that of all, and what it rests on.
-  void tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpLocation &location) const;
+  //! Drops what is improbable. \param filter Becomes that of the likeliest place. \param location Likewise,
+  //! its covariance that of all.
+  void settle(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpFilter &filter,
+              vpVlpLocation &location);
 
 private:
+  void reduce(const vpVlpHypotheses &hypotheses);
+  void tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpLocation &location) const;
   static bool isLost(const vpPoseHypothesis &place);
   static bool agree(const vpPoseHypothesis &place, const vpPoseHypothesis &other);
 

@@ -56,36 +56,12 @@ vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations,
     });
   };
   vpVlpFix fix = solved();
-  if (fix.valid && attitudeIsFree()) {
+  if (fix.valid && attitudeIsFree(*this)) {
     placeMiddles(observations, m_rig, vpBasePose::of(fix.wMb).wRb);
     fix = solved();
   }
   vpLampConsensus::explain(fix, usable, observations);
   return fix;
-}
-
-//! The lamps that a filter can use, in the order in which their lines were read. Until the next call.
-const vpLampFrame &vpVlpLocalizer::frameOf(const std::vector<vpLampObservation> &observations,
-                                           const std::vector<size_t> &usable, double time) const
-{
-  vpLampFrame &frame = m_scratch->frame;
-  frame.rig = &m_rig;
-  frame.lineTime = m_scratch->lineTime;
-  frame.timestamp = time;
-  frame.logUniform = -std::log(m_rig.width / m_rig.camera.get_px() * m_rig.height / m_rig.camera.get_py());
-  frame.lamps.clear();
-  for (size_t i : usable) {
-    const vpLampObservation &seen = observations[i];
-    if (const vpLamp *lamp = m_scratch->lamp(m_map, seen)) {
-      vpLampSight sight = vpLampSight::from(*lamp, seen, m_rig.camera);
-      const double logPeak = -std::log(2 * M_PI) - 0.5 * std::log(sight.covariance.determinant());
-      frame.lamps.push_back(
-          {i, lamp, &seen, time + (compensateShutter ? seen.time : 0), std::move(sight), logPeak});
-    }
-  }
-  std::sort(frame.lamps.begin(), frame.lamps.end(),
-            [](const vpFrameLamp &a, const vpFrameLamp &b) { return a.time < b.time; });
-  return frame;
 }
 
 /*!
@@ -129,7 +105,8 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
   if (!tracking || !location.fix.valid) {
     return;
   }
-  const vpLampFrame &frame = frameOf(location.observations, usable, location.timestamp);
+  const vpLampFrame &frame =
+      m_scratch->frameOf(m_rig, m_map, location.observations, usable, location.timestamp, compensateShutter);
   if (!m_places->lamps().looksAsBefore(frame, location.fix.wMb)) {
     location.fix = vpVlpFix();
     location.fix.refusal = "the lamps are not as large as they were: partly hidden, or one behind the other";
@@ -141,7 +118,7 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
       m_places->addWider(wider, hypotheses, true);
     }
     const vpVlpFix alone = location.fix;
-    settle(location);
+    m_places->settle(m_scratch->frame, hypotheses, filter, location);
     // One frame hardly tells a robot that moves from lamps that hang a little elsewhere.
     if (!filter.hasOdometry()) {
       const Eigen::Matrix<double, 6, 1> moved =
@@ -153,14 +130,6 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
   }
 }
 
-//! The likeliest place is the pose.
-void vpVlpLocalizer::settle(vpVlpLocation &location)
-{
-  m_places->reduce(hypotheses);
-  filter = m_places->likeliest().filter;
-  m_places->tell(m_scratch->frame, hypotheses, location);
-}
-
 //! All places where the robot may be go on to this frame; it may have been put elsewhere, too.
 void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &usable)
 {
@@ -170,13 +139,17 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     apart = location.observations;
     alone = solve(apart, usable);
     return alone.valid && !alone.ambiguous &&
-           m_places->lamps().looksAsBefore(frameOf(apart, usable, location.timestamp), alone.wMb);
+           m_places->lamps().looksAsBefore(
+               m_scratch->frameOf(m_rig, m_map, apart, usable, location.timestamp, compensateShutter),
+               alone.wMb);
   };
-  if (attitudeIsFree()) {
+  if (attitudeIsFree(*this)) {
     placeMiddles(location.observations, m_rig, filter.pose().wMb.rotation());
   }
   const double since = location.timestamp - filter.time();
-  m_places->follow(frameOf(location.observations, usable, location.timestamp), filter);
+  m_places->follow(
+      m_scratch->frameOf(m_rig, m_map, location.observations, usable, location.timestamp, compensateShutter),
+      filter);
   const bool elsewhere = m_places->mayBeElsewhere(m_scratch->frame, hypotheses, since),
              off = m_places->mayBeOff(m_scratch->frame, hypotheses);
   if ((elsewhere || off) && aloneIsGood()) {
@@ -194,7 +167,7 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
     begin(location, usable);
     return;
   }
-  settle(location);
+  m_places->settle(m_scratch->frame, hypotheses, filter, location);
 }
 
 END_VISP_NAMESPACE

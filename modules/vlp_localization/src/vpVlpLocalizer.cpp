@@ -104,7 +104,8 @@ bool vpVlpLocalizer::open(double time, vpVlpLocation &location)
     *m_places = vpPoseMixture();
   }
   m_lastFrame = time;
-  if (filter.started() && filter.state(filterAt(time).pose()) == vpVlpFilter::State::lost &&
+  if (filter.started() &&
+      filter.state(m_scratch->predicted(filter, time).pose()) == vpVlpFilter::State::lost &&
       m_places->lostAt(time)) {
     filter.stop(); // so long ago that what it expects of the lamps would mean nothing
   }
@@ -150,24 +151,14 @@ void vpVlpLocalizer::locate(vpVlpLocation &location)
   location.state = filter.state(location.fix);
 }
 
-//! The filter as predicted to a time: by a robot that may start and stop. Until the next call.
-const vpVlpFilter &vpVlpLocalizer::filterAt(double time) const
-{
-  vpVlpFilter &there = m_scratch->there;
-  there = filter;
-  there.rouse();
-  there.advance(time);
-  return there;
-}
-
 const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &frame)
 {
   if (tracking) {
     std::vector<vpRect> &windows = m_scratch->windows;
     windows.clear();
     if (filter.started()) {
-      vpLampWindows::expect(filterAt(frame.timestamp + m_scratch->halfReadout), m_map, m_rig,
-                            m_scratch->lineTime, windows);
+      vpLampWindows::expect(m_scratch->predicted(filter, frame.timestamp + m_scratch->halfReadout), m_map,
+                            m_rig, m_scratch->lineTime, windows);
     }
     return tracker.track(frame, windows);
   }
@@ -178,7 +169,7 @@ const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &fra
 vpLampMatch vpVlpLocalizer::matchByPlace(const std::vector<vpLampObservation> &observations,
                                          const std::vector<size_t> &usable, double time) const
 {
-  if (attitudeIsFree()) {
+  if (attitudeIsFree(*this)) {
     vpLampMatch match;
     match.refusal = "lamps that blink alike are told apart by the attitude of the mount only, and it is free";
     return match;

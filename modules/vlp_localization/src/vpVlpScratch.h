@@ -15,6 +15,13 @@
 
 BEGIN_VISP_NAMESPACE
 
+//! Whether roll and pitch are estimated, too.
+inline bool attitudeIsFree(const vpVlpLocalizer &localizer)
+{
+  return localizer.manyLamps.attitude == vpManyLampSolver::Attitude::free &&
+         localizer.solver == vpVlpLocalizer::Solver::all;
+}
+
 /*!
   What vpVlpLocalizer works on within a frame and never changes, or kept so that the next one takes no memory:
   each is assigned to before it is read, and none means anything from frame to frame.
@@ -35,6 +42,15 @@ struct vpVlpLocalizer::Scratch {
     const auto found = lampOf.find(observation.id);
     return found == lampOf.end() ? nullptr : &map.lamps[found->second];
   }
+
+  //! The filter as predicted to a time: by a robot that may start and stop. Until the next call.
+  const vpVlpFilter &predicted(const vpVlpFilter &filter, double time);
+
+  //! The lamps that a filter can use, in the order in which their lines were read, or all as if seen at the
+  //! time stamp (s). Until the next call.
+  const vpLampFrame &frameOf(const vpVlpRig &rig, const vpLampMap &map,
+                             const std::vector<vpLampObservation> &observations,
+                             const std::vector<size_t> &usable, double time, bool compensateShutter);
 
   double lineTime;                                // s, from line to line
   double halfReadout;                             // s, from a frame's time stamp to its middle line

@@ -377,8 +377,7 @@ void vpLedIdRecognizer::decide(vpLampObservation &lamp, const Sight &sight) cons
   if (!sight.readable) {
     return;
   }
-  const double shown = 1 - lamp.saturated; // what of the light the end of the grey scale leaves in sight
-  if (!sight.candidates.empty() && !(lamp.blinking > leastBlinking * shown)) {
+  if (!sight.candidates.empty() && !(lamp.blinking > leastBlinking)) {
     lamp.remark = lamp.blinking > 0 ? "only a part of it blinks as a lamp of the map"
                                     : "blinks as a lamp of the map, but has no outline of one";
     return;

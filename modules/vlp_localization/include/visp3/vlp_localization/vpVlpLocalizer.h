@@ -101,22 +101,14 @@ private:
     double time = 0; // s
   };
 
-  bool attitudeIsFree() const
-  {
-    return manyLamps.attitude == vpManyLampSolver::Attitude::free && solver == Solver::all;
-  }
   bool open(double time, vpVlpLocation &location);
-  const vpVlpFilter &filterAt(double time) const;
   const std::vector<vpLampObservation> &look(const vpVlpFrame &frame);
   void locate(vpVlpLocation &location);
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
   vpVlpFix solve(std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable) const;
-  const vpLampFrame &frameOf(const std::vector<vpLampObservation> &observations,
-                             const std::vector<size_t> &usable, double time) const;
   vpPoseHypothesis placeAt(const vpVlpFix &fix, const vpLampFrame &frame, bool put, bool wider) const;
   void begin(vpVlpLocation &location, const std::vector<size_t> &usable);
-  void settle(vpVlpLocation &location);
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
 
   vpVlpRig m_rig;
