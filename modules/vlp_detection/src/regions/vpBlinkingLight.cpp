@@ -162,11 +162,15 @@ bool isCut(const vpLedRoi &roi, const cv::Rect &window)
 double vpBlinkingLight::share(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
                               const cv::Rect &box)
 {
+  static const long few = 20; // of as many lines one is as dark as the darkest, noise aside
   std::vector<double> light;
   for (int line = box.y; line < box.br().y; ++line) {
     light.push_back(vpBrighter::sum(lines[line] + box.x, box.width));
   }
-  const double dark = *std::min_element(light.begin(), light.end());
+  std::vector<double> sorted = light;
+  const auto low = sorted.begin() + static_cast<long>(sorted.size()) / few;
+  std::nth_element(sorted.begin(), low, sorted.end());
+  const double dark = *low;
   double all = 0, kept = 0, shines = 0, squares = 0;
   for (size_t i = 0; i < light.size(); ++i) {
     const double now = lit[static_cast<size_t>(box.y) + i];

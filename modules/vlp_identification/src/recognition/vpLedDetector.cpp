@@ -253,7 +253,8 @@ double vpLedDetector::blinkingShare(const vpLinePicture &picture, const Region &
                         cv::Point(cvCeil(box(2)) + 1, cvCeil(box(3)) + 1)),
       seen = inside & cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
   std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
-  if (lit.empty() || seen.empty()) {
+  static const double deep = 0.5; // of stripes: where no line is dark, none tells whose light is on it
+  if (lit.empty() || seen.empty() || region.lamp.features.modulation < deep) {
     return 1;
   }
   if (region.lamp.saturated > 0) { // the brightest lines show no more than the grey scale has
