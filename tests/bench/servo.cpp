@@ -20,6 +20,7 @@
 #include <visp3/vlp_servo/vpServoLoop.h>
 #include <visp3/vlp_servo/vpServoSimulation.h>
 
+#include "vlp_servo/spoofedPair.h"
 #include "vpSimulatedStripes.h"
 
 namespace
@@ -256,18 +257,6 @@ void start(int seeds)
   }
 }
 
-//! The localizer gets no odometry.
-class NoOdometry : public vpPictureFeed
-{
-public:
-  explicit NoOdometry(vpPictureFeed &feed) : m_feed(feed) {}
-  void addOdometry(const vpOdometry &) override {}
-  std::optional<vpLocatedPicture> next(double now) override { return m_feed.next(now); }
-
-private:
-  vpPictureFeed &m_feed;
-};
-
 //! Of a drive under two lamps that give way to two with their frequencies, 36 cm beside.
 struct Spoofed {
   double stood = 0;    // s, from then until it stands for good; NaN: it drove on
@@ -277,24 +266,13 @@ struct Spoofed {
 
 Spoofed spoofedDrive(bool odometry, double speed, double from, std::uint64_t seed)
 {
-  constexpr double always = 1e9, aside = 0.36; // s, m
-  vpScenario scenario = world();
-  for (const size_t unused : {0, 2}) {
-    scenario.lamps[unused].dark.emplace_back(-1, always);
-  }
-  for (const size_t lamp : {1, 3}) {
-    vpScenario::Lamp copy = scenario.lamps[lamp];
-    copy.shift.y() = aside;
-    copy.dark.emplace_back(-1, from);
-    scenario.lamps[lamp].dark.emplace_back(from, always);
-    scenario.lamps.push_back(copy);
-  }
+  const vpScenario scenario = spoofedPair::spoofed(world(), from);
   const Drive line;
   const vpPathPoint begin = line.path.at(0);
   vpServoSimulationSettings settings;
   settings.start = {begin.place.x(), begin.place.y(), begin.heading};
   vpServoSimulation simulation(scenario, seed, settings);
-  NoOdometry none(simulation);
+  spoofedPair::NoOdometry none(simulation);
   vpVlpPose poses(odometry ? static_cast<vpPictureFeed &>(simulation) : none);
   vpServoLoopSettings servo;
   servo.follower.reference.speed = speed;

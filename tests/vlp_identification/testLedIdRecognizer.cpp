@@ -65,6 +65,17 @@ TEST(LedIdRecognizer, NearestLampThatFits)
   EXPECT_TRUE(seen.remark.empty());
 }
 
+TEST(LedIdRecognizer, StripesThatExplainHalfOfTheLightNameNoLamp)
+{
+  const vpLampMap map{{lamp("A", 2000), lamp("B", 2100), lamp("C", 3000)}};
+  vpLampObservation seen = stripes(2098, 3);
+  seen.blinking = 0.5;
+  seen = recognized(map, seen);
+  EXPECT_TRUE(seen.id.empty());
+  EXPECT_TRUE(seen.candidates.empty());
+  EXPECT_FALSE(seen.remark.empty());
+}
+
 TEST(LedIdRecognizer, NoLampFits)
 {
   const vpLampMap map{{lamp("A", 2000), lamp("B", 2100)}};

@@ -11,6 +11,8 @@
 #include <visp3/vlp_servo/vpServoLoop.h>
 #include <visp3/vlp_servo/vpServoSimulation.h>
 
+#include "spoofedPair.h"
+
 namespace
 {
 vpScenario world()
@@ -82,36 +84,6 @@ vpScenario darkened(double from, double until)
   }
   return scenario;
 }
-
-//! Two lamps alone; from \e from on, two others with their frequencies shine 36 cm beside, and they are dark.
-vpScenario spoofed(double from)
-{
-  constexpr double always = 1e9; // s
-  vpScenario scenario = world();
-  for (const size_t unused : {0, 2}) {
-    scenario.lamps[unused].dark.emplace_back(-1, always);
-  }
-  for (const size_t lamp : {1, 3}) {
-    vpScenario::Lamp copy = scenario.lamps[lamp];
-    copy.shift.y() = 0.36;
-    copy.dark.emplace_back(-1, from);
-    scenario.lamps[lamp].dark.emplace_back(from, always);
-    scenario.lamps.push_back(copy);
-  }
-  return scenario;
-}
-
-//! The localizer gets no odometry.
-class NoOdometry : public vpPictureFeed
-{
-public:
-  explicit NoOdometry(vpPictureFeed &feed) : m_feed(feed) {}
-  void addOdometry(const vpOdometry &) override {}
-  std::optional<vpLocatedPicture> next(double now) override { return m_feed.next(now); }
-
-private:
-  vpPictureFeed &m_feed;
-};
 
 //! Largest true speed from \e from to \e to, m/s.
 double fastest(vpServoSimulation &world, double from, double to)
@@ -225,7 +197,7 @@ TEST(ServoSimulation, LampsAndOdometryThatFailBringItToAStandWithin300MsAndItGoe
 TEST(ServoSimulation, SpoofedPairBesideOdometryIsNotFollowed)
 {
   for (const std::uint64_t seed : {2, 3, 4}) {
-    vpServoSimulation lamps(spoofed(1.5), seed, onStartOf(line));
+    vpServoSimulation lamps(spoofedPair::spoofed(world(), 1.5), seed, onStartOf(line));
     vpVlpPose poses(lamps);
     vpServoLoop loop(lamps.robot(), poses, lamps, line, {});
     double farthest = 0; // m
@@ -248,8 +220,8 @@ TEST(ServoSimulation, SpoofedPairWithoutOdometryBringsItToAStandWithin300MsAndIt
   settings.follower.reference.speed = 0.1;
   settings.safety.giveUp = 4;                   // s, longer than the place before stays known
   for (const double from : {1.5, 1.52, 1.54}) { // s, before a picture and in the midst of one
-    vpServoSimulation lamps(spoofed(from), 2, onStartOf(line));
-    NoOdometry feed(lamps);
+    vpServoSimulation lamps(spoofedPair::spoofed(world(), from), 2, onStartOf(line));
+    spoofedPair::NoOdometry feed(lamps);
     vpVlpPose poses(feed);
     const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, line, settings).run();
     double stood = 0; // s, since then

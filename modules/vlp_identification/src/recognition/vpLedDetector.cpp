@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -252,23 +251,10 @@ double vpLedDetector::blinkingShare(const vpLinePicture &picture, const Region &
   const cv::Rect inside(cv::Point(cvFloor(box(0)), cvFloor(box(1))),
                         cv::Point(cvCeil(box(2)) + 1, cvCeil(box(3)) + 1)),
       seen = inside & cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
-  std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
+  const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
   static const double deep = 0.5; // of stripes: where no line is dark, none tells whose light is on it
   if (lit.empty() || seen.empty() || region.lamp.features.modulation < deep) {
     return 1;
-  }
-  if (region.lamp.saturated > 0) { // the brightest lines show no more than the grey scale has
-    std::vector<float> shines;
-    std::copy_if(lit.begin() + seen.y, lit.begin() + seen.br().y, std::back_inserter(shines),
-                 [](float share) { return share > 0; });
-    if (!shines.empty()) {
-      const auto white = shines.begin() + static_cast<long>((1 - region.lamp.saturated) *
-                                                            static_cast<double>(shines.size() - 1));
-      std::nth_element(shines.begin(), white, shines.end());
-      for (float &share : lit) {
-        share = std::min(share, *white);
-      }
-    }
   }
   return vpBlinkingLight::share(picture.grey, lit, seen);
 }
