@@ -45,7 +45,7 @@ struct VISP_EXPORT vpRowTimeError {
   Of a lamp whose shape the map states by its size, the outline has that shape: a window that crossbars divide
   evenly has the stripes of a lamp, and is no disc.
 
-  A lamp has an outline, and its stripes explain nearly all the light inside. Where two overlap, or what was
+  A lamp has an outline, and its stripes explain most of the light inside. Where two overlap, or what was
   read is a neighbour's, they do not (`leastBlinking`).
 
   One that has at least `minConfidence` and a single lamp gives the id. What several lamps of one identifier
