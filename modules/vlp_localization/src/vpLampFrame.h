@@ -5,8 +5,10 @@
 #ifndef vpLampFrame_h
 #define vpLampFrame_h
 
+#include <cmath>
 #include <vector>
 
+#include <Eigen/LU>
 #include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_core/vpLampObservation.h>
 #include <visp3/vlp_core/vpVlpRig.h>
@@ -15,6 +17,13 @@
 BEGIN_VISP_NAMESPACE
 
 const size_t poseLamps = 2; // that a pose needs
+
+//! Log density of a ray that is \e off.
+inline double logNormal(const Eigen::Vector2d &off, const Eigen::Matrix2d &covariance)
+{
+  return -0.5 * (off.dot(covariance.inverse() * off) + std::log(covariance.determinant())) -
+         std::log(2 * M_PI);
+}
 
 //! A lamp of the map in a frame.
 struct vpFrameLamp {

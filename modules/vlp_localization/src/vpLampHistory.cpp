@@ -5,6 +5,8 @@
 #include "vpLampHistory.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -91,18 +93,35 @@ void vpLampHistory::setStranger(const vpLamp &lamp, bool stranger)
   past.strayed = 0;
 }
 
-double vpLampHistory::addStranger(const vpLamp &lamp, const Eigen::Matrix<double, 3, 2> &axes,
-                                  const vpVlpFilter::Innovation &innovation)
+double vpLampHistory::logStill(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const
+{
+  const Past *past = find(lamp);
+  if (past == nullptr || !past->away) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  const Eigen::Vector2d ray = innovation.ray - innovation.byPlace * *past->away;
+  const Eigen::Matrix2d S = past->awayCovariance + innovation.covariance;
+  return logNormal(ray, S);
+}
+
+double vpLampHistory::addStranger(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation)
 {
   Past &past = m_past[lamp.id];
-  const Eigen::Vector3d away = axes * innovation.ray;
   past.stranger = true;
+  const Eigen::Matrix<double, 3, 2> placeBy = // across the ray
+      innovation.byPlace.transpose() * (innovation.byPlace * innovation.byPlace.transpose()).inverse();
   if (!past.away) {
-    past.away = away;
+    past.away = placeBy * innovation.ray;
+    past.awayCovariance = innovation.covariance;
+    return 0;
   }
-  const Eigen::Vector2d moved = axes.transpose() * (away - *past.away) / axes.col(0).squaredNorm();
+  const Eigen::Vector2d ray = innovation.ray - innovation.byPlace * *past.away;
+  const Eigen::Matrix2d S = past.awayCovariance + innovation.covariance,
+                        K = past.awayCovariance * S.inverse();
   const double before = past.strayed;
-  past.strayed = std::max(before, 0.5 * moved.dot(innovation.covariance.inverse() * moved));
+  past.strayed = std::max(before, 0.5 * ray.dot(S.inverse() * ray));
+  *past.away += placeBy * (K * ray);
+  past.awayCovariance -= (K * past.awayCovariance).eval();
   return past.strayed - before;
 }
 

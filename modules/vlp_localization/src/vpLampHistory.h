@@ -54,21 +54,23 @@ public:
   //! Whether they have, and it was not seen in its place since.
   bool isStranger(const vpLamp &lamp) const;
   /*!
-    Takes a stranger, which hangs still: as far from its lamp as it was first seen, m along x, y and z of w.
-    \param axes The camera's x and y, m in w at the lamp's depth, by which rays become ways. \return Nats by
-    which the frame makes this less likely than the frames before did.
+    Log density of a ray to a stranger, which hangs still: its way from its lamp (m along x, y and z of w) is
+    constant. Minus infinity where it was not seen before.
   */
-  double addStranger(const vpLamp &lamp, const Eigen::Matrix<double, 3, 2> &axes,
-                     const vpVlpFilter::Innovation &innovation);
+  double logStill(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const;
+  //! Takes what a frame shows of a stranger. \return Nats by which the frame makes it less likely than the
+  //! frames before did that it hangs still.
+  double addStranger(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation);
   //! Where lamps were seen; how large they are stays known, and which are strangers.
   void forgetPlaces();
 
 private:
   struct Past {
     bool stranger = false;
-    std::optional<Eigen::Vector3d> away; // m, of the stranger from the lamp, when it was first seen
-    double strayed = 0;                  // half the square of the most that it has moved since, in sigmas
-    int places = 0;                      // frames that told its place
+    std::optional<Eigen::Vector3d> away; // m, of the stranger from the lamp,
+    Eigen::Matrix2d awayCovariance;      // and its covariance, as rays
+    double strayed = 0; // half the square of the most that a frame had it elsewhere, in sigmas
+    int places = 0;     // frames that told its place
     Eigen::Vector2d offset = Eigen::Vector2d::Zero();     // normalised units, running mean of the innovations
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // of that mean, were it 0
     int sizes = 0;                                        // frames that told its size

@@ -23,12 +23,6 @@ double logSum(double a, double b)
   return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b)));
 }
 
-double logNormal(const Eigen::Vector2d &off, const Eigen::Matrix2d &covariance)
-{
-  return -0.5 * (off.dot(covariance.inverse() * off) + std::log(covariance.determinant())) -
-         std::log(2 * M_PI);
-}
-
 //! Whether lamps are so far from where the filter expected them that their rays are not linear in it.
 bool bends(const std::vector<vpPoseHypothesis::Verdict> &verdicts)
 {
@@ -86,7 +80,9 @@ double vpPoseHypothesis::follow(const vpLampFrame &frame)
 double vpPoseHypothesis::weigh(const vpLampFrame &frame, double dt)
 {
   const bool odometry = filter.hasOdometry();
+  m_strangers.clear();
   for (const vpFrameLamp &lamp : frame.lamps) {
+    m_strangers.push_back(history.isStranger(*lamp.lamp));
     for (vpVlpFilter *each : {&filter, &m_apart[0], &m_apart[1]}) {
       each->expect(lamp.sight);
     }
@@ -174,49 +170,56 @@ void vpPoseHypothesis::attempt(const vpLampFrame &frame, const vpVlpFilter &befo
   }
 }
 
-//! Lets each lamp correct at the time of its line. \param least Log likelihood below which the pass is given
-//! up.
+//! Lets each lamp correct at the time of its line, strangers last, once the others have told where they are.
+//! \param least Log likelihood below which the pass is given up.
 void vpPoseHypothesis::correct(const vpLampFrame &frame, double least, Pass &pass) const
 {
   double open = 0; // what the lamps that are left may add
   for (const vpFrameLamp &lamp : frame.lamps) {
     open += lamp.logPeak;
   }
-  pass.verdicts.clear();
+  pass.verdicts.assign(frame.lamps.size(), Verdict());
   pass.logLikelihood = 0;
+  size_t accepted = 0;
   pass.filter.mark(frame.timestamp);
-  for (size_t k = 0; k < frame.lamps.size(); ++k) {
-    const vpFrameLamp &lamp = frame.lamps[k];
-    pass.filter.advance(lamp.time);
-    vpLampSight sight = lamp.sight;
-    const Verdict verdict = judge(*lamp.lamp, m_changes[k].empty(), sight, pass.filter, frame.logUniform);
-    if (verdict.accepted) {
-      pass.filter.update(sight);
-    }
-    pass.logLikelihood += verdict.logLikelihood;
-    pass.verdicts.push_back(verdict);
-    open -= lamp.logPeak;
-    if (pass.logLikelihood + std::max(0.0, open) < least) {
-      return;
+  for (const bool strangers : {false, true}) {
+    for (size_t k = 0; k < frame.lamps.size(); ++k) {
+      if (m_strangers[k] != strangers) {
+        continue;
+      }
+      const vpFrameLamp &lamp = frame.lamps[k];
+      pass.filter.advance(lamp.time);
+      vpLampSight sight = lamp.sight;
+      pass.verdicts[k] = judge(frame, k, strangers && accepted >= poseLamps, sight, pass.filter);
+      if (pass.verdicts[k].accepted) {
+        pass.filter.update(sight);
+        ++accepted;
+      }
+      pass.logLikelihood += pass.verdicts[k].logLikelihood;
+      open -= lamp.logPeak;
+      if (pass.logLikelihood + std::max(0.0, open) < least) {
+        return;
+      }
     }
   }
   pass.filter.conclude();
 }
 
 //! \param sight Becomes as uncertain as what the lamp may be off by makes it.
-vpPoseHypothesis::Verdict vpPoseHypothesis::judge(const vpLamp &lamp, bool asLarge, vpLampSight &sight,
-                                                  const vpVlpFilter &filter, double logUniform) const
+vpPoseHypothesis::Verdict vpPoseHypothesis::judge(const vpLampFrame &frame, size_t which, bool told,
+                                                  vpLampSight &sight, const vpVlpFilter &filter) const
 {
-  const double stranger = history.isStranger(lamp) ? m_hypotheses.staying : m_hypotheses.stranger;
-  const double other = std::log(stranger) + logUniform;
+  const vpLamp &lamp = *frame.lamps[which].lamp;
   Verdict verdict;
-  verdict.wasStranger = history.isStranger(lamp);
-  verdict.logLikelihood = other;
+  verdict.wasStranger = m_strangers[which];
   const Eigen::Vector2d offset = history.offset(lamp);
   sight.covariance += offset * offset.transpose();
   verdict.innovation = filter.innovation(sight);
   const vpVlpFilter::Innovation &seen = verdict.innovation;
-  if (!seen.inFront || !asLarge) {
+  const double stranger = verdict.wasStranger ? m_hypotheses.staying : m_hypotheses.stranger,
+               other = std::log(stranger) + frame.logUniform;
+  verdict.logLikelihood = other;
+  if (!seen.inFront || !m_changes[which].empty()) {
     return verdict;
   }
   const double tolerance = history.tolerance(lamp) / seen.depth,
@@ -224,7 +227,8 @@ vpPoseHypothesis::Verdict vpPoseHypothesis::judge(const vpLamp &lamp, bool asLar
   const Eigen::Matrix2d anyOffset = tolerance * tolerance * Eigen::Matrix2d::Identity();
   const double exact = std::log(1 - stranger - displaced) + logNormal(seen.ray, seen.covariance),
                near = std::log(displaced) + logNormal(seen.ray - offset, seen.covariance + anyOffset);
-  verdict.accepted = std::max(exact, near) > other;
+  const double still = told ? std::log(stranger) + history.logStill(lamp, seen) : other;
+  verdict.accepted = std::max(exact, near) > std::max(other, still);
   if (near > exact) {
     sight.covariance += anyOffset;
   }
@@ -249,18 +253,15 @@ void vpPoseHypothesis::learn(const vpLampFrame &frame)
     if (verdicts[k].accepted) {
       history.add(*lamp.lamp, *lamp.seen, verdicts[k].innovation, expectedExtent(frame, *lamp.lamp));
     } else if (m_changes[k].empty()) {
-      learnStranger(frame, k);
+      learnStranger(lamp, verdicts[k]);
     }
   }
 }
 
-void vpPoseHypothesis::learnStranger(const vpLampFrame &frame, size_t lamp)
+void vpPoseHypothesis::learnStranger(const vpFrameLamp &lamp, Verdict &verdict)
 {
-  Verdict &verdict = verdicts[lamp];
   if (verdict.innovation.inFront) {
-    const Eigen::Matrix3d wRc = filter.pose().wMb.linear() * vpMountFrame(*frame.rig).bRc;
-    verdict.strayed = history.addStranger(*frame.lamps[lamp].lamp,
-                                          verdict.innovation.depth * wRc.leftCols<2>(), verdict.innovation);
+    verdict.strayed = history.addStranger(*lamp.lamp, verdict.innovation);
   }
 }
 
@@ -285,7 +286,7 @@ vpPoseHypothesis vpPoseHypothesis::coasted(const vpLampFrame &frame) const
   other.m_changes.assign(frame.lamps.size(), misplaced);
   other.m_logLikelihood = other.weigh(frame, m_since);
   for (size_t k = 0; k < frame.lamps.size(); ++k) {
-    other.learnStranger(frame, k);
+    other.learnStranger(frame.lamps[k], other.verdicts[k]);
   }
   return other;
 }

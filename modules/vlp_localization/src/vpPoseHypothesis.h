@@ -78,13 +78,13 @@ private:
 
   void correct(const vpLampFrame &frame, double least, Pass &pass) const;
   void attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least, Pass &pass);
-  Verdict judge(const vpLamp &lamp, bool asLarge, vpLampSight &sight, const vpVlpFilter &filter,
-                double logUniform) const;
+  Verdict judge(const vpLampFrame &frame, size_t which, bool told, vpLampSight &sight,
+                const vpVlpFilter &filter) const;
   double weigh(const vpLampFrame &frame, double dt);
   size_t mix(vpVlpFilter &mixed, size_t first, size_t end) const;
   void compare(const vpLampFrame &frame);
   void learn(const vpLampFrame &frame);
-  void learnStranger(const vpLampFrame &frame, size_t lamp);
+  void learnStranger(const vpFrameLamp &lamp, Verdict &verdict);
   vpLampExtent expectedExtent(const vpLampFrame &frame, const vpLamp &lamp) const;
 
   vpVlpHypotheses m_hypotheses;
@@ -92,6 +92,7 @@ private:
   std::vector<Pass> m_passes;
   std::array<vpVlpFilter, 2> m_apart; // the odometry is off; it is right
   bool m_parted = false;              // there was odometry in the latest frame
+  std::vector<bool> m_strangers;      // which lamps of the latest frame were so before it
   std::vector<std::string> m_changes; // of each lamp of the latest frame; empty: as before
   vpVlpFilter m_there;                // attempt(): takes no memory
   vpVlpFilter m_before;               // before the latest frame,

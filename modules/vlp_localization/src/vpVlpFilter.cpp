@@ -62,6 +62,7 @@ struct vpVlpFilter::Predicted {
   bool inFront = false;
   double depth = 0;
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
+  Eigen::Matrix<double, 2, 3> byPlace; // of the lamp
   Derivative<2> H;
   Eigen::Matrix2d ownDoubt = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
 };
@@ -138,6 +139,7 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
   predicted.ray = (1 + m_x(lens + 2)) * ray.ray + m_x.segment<2>(lens);
   const Eigen::Matrix<double, 2, 3> byPlace = ray.derivative.leftCols<3>(),
                                     byTurn = ray.derivative.rightCols<3>();
+  predicted.byPlace = -byPlace;
   const Eigen::Matrix3d byAngles = rotationByAngles(base);
   Eigen::Matrix<double, 2, 3> byAngle = byTurn * byAngles;
   if (!freeAttitude) { // yaw carries the camera along on its level arm, roll and pitch leave it where it is
@@ -198,6 +200,7 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp, const P
       innovation.covariance += Eigen::Vector2d(byFirst, bySecond) * H.rows.row(k);
     }
     innovation.depth = predicted.depth;
+    innovation.byPlace = predicted.byPlace;
   }
   return innovation;
 }
