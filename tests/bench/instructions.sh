@@ -34,12 +34,18 @@ export GLIBC_TUNABLES=glibc.cpu.hwcaps=-ERMS,-AVX512F,-AVX512VL,-AVX512BW:glibc.
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+failed_with() # EXIT
+{
+  cat "$work/said" >&2
+  [ "$1" != 132 ] || echo "instructions.sh: valgrind does not know an instruction that a library uses on this processor" >&2
+  exit $(($1 == 132 ? 77 : 1))
+}
 count() # SIZE whole|tracked|cluttered: millions of instructions per frame
 {
   local how=("$2" "$frames")
   [ "$2" != cluttered ] || how=(whole "$frames" cluttered)
   valgrind -q --tool=callgrind --toggle-collect='vpCountedFrames*' --callgrind-out-file="$work/counts" \
-    "$program" "$1" "${how[@]}" >"$work/said" 2>&1 || { cat "$work/said" >&2; exit 1; }
+    "$program" "$1" "${how[@]}" >"$work/said" 2>&1 || failed_with $?
   if ! grep -q "$frames frames, $frames with a position" "$work/said"; then
     cat "$work/said" >&2
     exit 1

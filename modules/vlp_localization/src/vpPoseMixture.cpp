@@ -131,15 +131,6 @@ void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
   const auto negligible = [&](const vpPoseHypothesis &place) {
     return place.logWeight < most + std::log(hypotheses.negligible);
   };
-  if (getenv("DBG"))
-    for (auto &p : m_places) {
-      fprintf(stderr, "  place w %.1f ll %.1f wide %d acc %zu frames %d:", p.logWeight, p.logLikelihood(),
-              p.filter.doubtsClaims(), p.accepted(), p.frames);
-      for (auto &v : p.verdicts)
-        fprintf(stderr, " [%d was %d ll %.1f str %.1f]", v.accepted, v.wasStranger, v.logLikelihood,
-                v.strayed);
-      fputs("\n", stderr);
-    }
   static const size_t many = 4; // places, each of which takes as long as one
   size_t kept = 1;
   while (kept < std::min(many, m_places.size()) && !negligible(m_places[kept])) {

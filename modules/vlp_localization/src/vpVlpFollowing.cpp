@@ -66,14 +66,14 @@ vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations,
 
 /*!
   A place that begins with a frame. \param put The robot was put there, else it has come from the last pose.
-  \param wider Camera and map are less exact than they say.
+  \param wider Times that camera and map are taken for less exact than they say: vpVlpFilter::doubtClaims().
 */
 vpPoseHypothesis vpVlpLocalizer::placeAt(const vpVlpFix &fix, const vpLampFrame &frame, bool put,
-                                         bool wider) const
+                                         int wider) const
 {
   vpVlpFilter start = filter;
   start.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
-  if (wider) {
+  for (int step = 0; step < wider; ++step) {
     start.doubtClaims();
   }
   vpLampHistory lamps = m_places->lamps();
@@ -112,10 +112,13 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
     location.fix.refusal = "the lamps are not as large as they were: partly hidden, or one behind the other";
     vpLampConsensus::explain(location.fix, usable, location.observations);
   } else if (!location.fix.ambiguous) {
-    const vpPoseHypothesis wider = placeAt(location.fix, frame, false, true);
-    m_places->restart(placeAt(location.fix, frame, false, false));
+    const vpPoseHypothesis exact = placeAt(location.fix, frame, false, 0),
+                           wider = placeAt(location.fix, frame, false, 1),
+                           widest = placeAt(location.fix, frame, false, 3);
+    m_places->restart(exact);
     if (location.fix.degreesOfFreedom > 0) {
       m_places->addWider(wider, hypotheses, true);
+      m_places->addWider(widest, hypotheses, true);
     }
     const vpVlpFix alone = location.fix;
     m_places->settle(m_scratch->frame, hypotheses, filter, location);
@@ -154,11 +157,10 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
              off = m_places->mayBeOff(m_scratch->frame, hypotheses);
   if ((elsewhere || off) && aloneIsGood()) {
     if (elsewhere) {
-      m_places->addElsewhere(m_scratch->frame, placeAt(alone, m_scratch->frame, true, false), hypotheses,
-                             since);
+      m_places->addElsewhere(m_scratch->frame, placeAt(alone, m_scratch->frame, true, 0), hypotheses, since);
     }
     if (off) {
-      m_places->addWider(placeAt(alone, m_scratch->frame, false, true), hypotheses, false);
+      m_places->addWider(placeAt(alone, m_scratch->frame, false, 1), hypotheses, false);
     }
   }
   if (m_places->lost()) {

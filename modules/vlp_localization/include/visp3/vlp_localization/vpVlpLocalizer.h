@@ -107,7 +107,7 @@ private:
   vpLampMatch matchByPlace(const std::vector<vpLampObservation> &observations,
                            const std::vector<size_t> &usable, double time) const;
   vpVlpFix solve(std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable) const;
-  vpPoseHypothesis placeAt(const vpVlpFix &fix, const vpLampFrame &frame, bool put, bool wider) const;
+  vpPoseHypothesis placeAt(const vpVlpFix &fix, const vpLampFrame &frame, bool put, int wider) const;
   void begin(vpVlpLocation &location, const std::vector<size_t> &usable);
   void follow(vpVlpLocation &location, const std::vector<size_t> &usable);
 
