@@ -13,7 +13,7 @@
 
 #include <visp3/vlp_evaluation/vpErrorStatistics.h>
 
-#include "vpSeenLamps.h"
+#include "common/vpSeenLamps.h"
 #include "vpSimulatedStripes.h"
 
 namespace

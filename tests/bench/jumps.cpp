@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "vpSeenLamps.h"
+#include "common/vpSeenLamps.h"
 #include "vpSimulatedStripes.h"
 
 namespace

@@ -14,7 +14,7 @@
 
 #include <Eigen/LU>
 
-#include "vpSeenLamps.h"
+#include "common/vpSeenLamps.h"
 #include "vpSimulatedStripes.h"
 
 namespace
