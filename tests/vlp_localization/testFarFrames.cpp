@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
-#include "bench/vpSeenLamps.h"
+#include "common/vpSeenLamps.h"
 #include "hungLamps.h"
 #include "lampDrive.h"
 
