@@ -8,8 +8,8 @@
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpPixelMeterConversion.h>
 #include <visp3/core/vpRotationMatrix.h>
+#include <visp3/vlp_identification/vpIdentifierLayout.h>
 #include <visp3/vlp_identification/vpLedIdPlanner.h>
-#include <visp3/vlp_localization/vpIdentifierLayout.h>
 
 #include "common/vpProgram.h"
 #include "vpPlanText.h"

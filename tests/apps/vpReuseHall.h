@@ -18,8 +18,8 @@
 
 #include <visp3/core/vpMeterPixelConversion.h>
 #include <visp3/core/vpRzyxVector.h>
+#include <visp3/vlp_identification/vpIdentifierLayout.h>
 #include <visp3/vlp_identification/vpLedIdPlanner.h>
-#include <visp3/vlp_localization/vpIdentifierLayout.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 #include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
 

@@ -115,7 +115,7 @@ struct Case {
 
 void coldStarts(const Case &each, size_t lamps)
 {
-  const std::vector<Eigen::Vector3d> positions = reuseScene::grid(lamps, each.spacing, each.jitter, 7);
+  const std::vector<Eigen::Vector3d> positions = vpLampGrid(lamps, each.spacing, each.jitter, 7);
   const double start = milliseconds();
   const vpIdentifierAssignment laid = layOver(positions);
   const double layoutTime = (milliseconds() - start) / 1000;
@@ -221,10 +221,10 @@ int main(int argc, char **argv)
       << "\n| map | lamps in view | reflection | refused, % | fix kept and right, % | no fix, % | wrong "
          "|\n|---|---|---|---|---|---|---|"
       << std::endl;
-  const std::vector<Eigen::Vector3d> hall = reuseScene::grid(36, 1.2, 0, 7);
+  const std::vector<Eigen::Vector3d> hall = vpLampGrid(36, 1.2, 0, 7);
   std::vector<size_t> own(hall.size());
   std::iota(own.begin(), own.end(), 0);
-  const std::vector<Eigen::Vector3d> building = reuseScene::grid(1000, 1.2, 0, 7);
+  const std::vector<Eigen::Vector3d> building = vpLampGrid(1000, 1.2, 0, 7);
   const vpLampMap alone = reuseScene::mapOf(hall, own);
   const vpLampMap shared = reuseScene::mapOf(building, layOver(building).identifiers);
   for (size_t inView : {3, 4, 5}) {

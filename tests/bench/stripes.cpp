@@ -171,7 +171,8 @@ int main(int argc, char **argv)
   conditions[9].noise = 40;
   conditions[10].name = "noise of a line 20 dB, a pixel 80";
   conditions[10].noise = 80;
-  if (argc > 2) conditions = {conditions[static_cast<size_t>(std::atoi(argv[2]))]};
+  if (argc > 2)
+    conditions = {conditions[static_cast<size_t>(std::atoi(argv[2]))]};
   std::printf("%-34s %5s %6s %6s %6s | %s\n", "lamp", "strip", "id %", "kind", "told %",
               "frequency Hz, own, worst | duty, own | phase difference, own");
   for (const Condition &condition : conditions) {

@@ -18,9 +18,10 @@
 
 #include <Eigen/Core>
 #include <visp3/core/vpMeterPixelConversion.h>
-#include <visp3/vlp_localization/vpIdentifierLayout.h>
+#include <visp3/vlp_identification/vpIdentifierLayout.h>
 #include <visp3/vlp_localization/vpLampMatcher.h>
 
+#include "common/vpLampGrid.h"
 #include "vlp_localization/lampScene.h"
 
 namespace reuseScene
@@ -42,21 +43,6 @@ inline vpVlpRig rig()
 
 //! Half the diagonal of what the camera sees of the ceiling, m.
 const double viewRadius = 0.5 * 1000 / 488.28125 * (3 - 0.19);
-
-//! A square of \e count lamps every \e spacing (m), each off its knot by up to \e jitter (m); 3 m high, by 2
-//! cm.
-inline std::vector<Eigen::Vector3d> grid(size_t count, double spacing, double jitter, unsigned int seed)
-{
-  Random random(seed);
-  const size_t side = static_cast<size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
-  std::vector<Eigen::Vector3d> positions;
-  for (size_t k = 0; k < count; ++k) {
-    const double x = spacing * static_cast<double>(k % side), y = spacing * static_cast<double>(k / side);
-    positions.emplace_back(x + random.uniform(-jitter, jitter), y + random.uniform(-jitter, jitter),
-                           3 + random.normal(0.02));
-  }
-  return positions;
-}
 
 inline vpLampMap mapOf(const std::vector<Eigen::Vector3d> &positions, const std::vector<size_t> &identifiers)
 {

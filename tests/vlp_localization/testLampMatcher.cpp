@@ -28,7 +28,7 @@ using Outcome = vpLampMatch::Outcome;
 
 vpLampMap laidMap(size_t lamps, double spacing, double jitter, size_t identifiers)
 {
-  const std::vector<Eigen::Vector3d> positions = reuseScene::grid(lamps, spacing, jitter, 3);
+  const std::vector<Eigen::Vector3d> positions = vpLampGrid(lamps, spacing, jitter, 3);
   vpIdentifierLayout layout;
   layout.viewRadius = reuseScene::viewRadius;
   return reuseScene::mapOf(positions, layout.lay(positions, identifiers).identifiers);
@@ -119,7 +119,7 @@ TEST(LampMatcher, IsNeverWrongUnderIdentifiersLaidAtRandomAndCoarseErrors)
   errors.survey = 0.03;
   errors.tilt = 0.4 * degree;
   lampScene::Random random(17);
-  const std::vector<Eigen::Vector3d> positions = reuseScene::grid(400, 1.8, 0, 3);
+  const std::vector<Eigen::Vector3d> positions = vpLampGrid(400, 1.8, 0, 3);
   std::vector<size_t> identifiers(positions.size());
   for (size_t &identifier : identifiers) {
     identifier = static_cast<size_t>(random.uniform(0, 10));
@@ -334,8 +334,7 @@ TEST(LampMatcher, RefusesInOneLineWhatIsTooLittle)
 
 TEST(LampMatcher, GivesUpOnACeilingOfOneIdentifier)
 {
-  Ceiling ceiling(reuseScene::mapOf(reuseScene::grid(2500, 1.2, 0, 3), std::vector<size_t>(2500, 0)),
-                  Errors(), 83);
+  Ceiling ceiling(reuseScene::mapOf(vpLampGrid(2500, 1.2, 0, 3), std::vector<size_t>(2500, 0)), Errors(), 83);
   const View view = viewOf(ceiling, 6);
   const vpLampMatch match = matcherOf(ceiling).match(view.observations, view.all());
   EXPECT_EQ(match.outcome, Outcome::ambiguous);

@@ -11,8 +11,8 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_evaluation/vpCapacityFigure.h>
+#include <visp3/vlp_identification/vpIdentifierLayout.h>
 #include <visp3/vlp_identification/vpLedIdPlanner.h>
-#include <visp3/vlp_localization/vpIdentifierLayout.h>
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;

@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#include <visp3/vlp_localization/vpIdentifierLayout.h>
+#include <visp3/vlp_identification/vpIdentifierLayout.h>
 
 #include <algorithm>
 #include <array>

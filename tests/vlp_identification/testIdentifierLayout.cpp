@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
+#include <visp3/vlp_identification/vpIdentifierLayout.h>
 
 #include "common/vpExpectError.h"
-#include "vlp_localization/reuseScene.h"
+#include "common/vpLampGrid.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
@@ -19,14 +21,14 @@ using namespace VISP_NAMESPACE_NAME;
 
 namespace
 {
-using reuseScene::grid;
-
 std::vector<Eigen::Vector3d> randomPlaces(size_t count, double side)
 {
-  lampScene::Random random(5);
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(0, side);
   std::vector<Eigen::Vector3d> places;
   for (size_t k = 0; k < count; ++k) {
-    places.emplace_back(random.uniform(0, side), random.uniform(0, side), 3);
+    const double y = uniform(generator);
+    places.emplace_back(uniform(generator), y, 3);
   }
   return places;
 }
@@ -94,7 +96,7 @@ size_t alike(const std::vector<Seen> &sets, double tolerance)
 
 TEST(IdentifierLayout, TwoLampsDiffer)
 {
-  const vpIdentifierAssignment laid = vpIdentifierLayout().lay(grid(2, 1, 0, 1), 2);
+  const vpIdentifierAssignment laid = vpIdentifierLayout().lay(vpLampGrid(2, 1, 0, 1), 2);
   ASSERT_EQ(laid.identifiers.size(), 2u);
   EXPECT_NE(laid.identifiers[0], laid.identifiers[1]);
   EXPECT_EQ(laid.pairsInView, 1u);
@@ -105,7 +107,8 @@ TEST(IdentifierLayout, NoIdentifierTwiceWithinTwoViews)
 {
   vpIdentifierLayout layout;
   layout.viewRadius = 2;
-  for (const auto &places : {grid(400, 1.2, 0, 1), grid(400, 1.2, 0.3, 2), randomPlaces(300, 24)}) {
+  for (const auto &places :
+       {vpLampGrid(400, 1.2, 0, 1), vpLampGrid(400, 1.2, 0.3, 2), randomPlaces(300, 24)}) {
     const vpIdentifierAssignment laid = layout.lay(places, 50);
     EXPECT_EQ(repeatedWithin(places, laid.identifiers, 4), 0u);
     EXPECT_EQ(laid.repeatedPairs, 0u);
@@ -118,7 +121,8 @@ TEST(IdentifierLayout, NoThreeLampsLookLikeThreeOthers)
   vpIdentifierLayout layout;
   layout.viewRadius = 1.5;
   layout.tolerance = 0.1;
-  for (const auto &places : {grid(100, 1.2, 0, 1), grid(100, 1.2, 0.3, 2), randomPlaces(100, 12)}) {
+  for (const auto &places :
+       {vpLampGrid(100, 1.2, 0, 1), vpLampGrid(100, 1.2, 0.3, 2), randomPlaces(100, 12)}) {
     const vpIdentifierAssignment laid = layout.lay(places, 20);
     EXPECT_EQ(laid.repeatedTriples, 0u);
     EXPECT_GT(laid.triples, 100u);
@@ -130,17 +134,17 @@ TEST(IdentifierLayout, CountsWhatItCannotTellApart)
 {
   vpIdentifierLayout layout;
   layout.viewRadius = 1.5;
-  const vpIdentifierAssignment laid = layout.lay(grid(100, 1.2, 0, 1), 2);
+  const vpIdentifierAssignment laid = layout.lay(vpLampGrid(100, 1.2, 0, 1), 2);
   EXPECT_GT(laid.repeatedPairs, 0u);
   EXPECT_EQ(laid.repeatedTriples, laid.triples); // of two identifiers each set of three holds one twice
-  EXPECT_EQ(laid.repeatedPairs, repeatedWithin(grid(100, 1.2, 0, 1), laid.identifiers, 3));
+  EXPECT_EQ(laid.repeatedPairs, repeatedWithin(vpLampGrid(100, 1.2, 0, 1), laid.identifiers, 3));
 }
 
 TEST(IdentifierLayout, IsFarBetterThanChance)
 {
   vpIdentifierLayout layout;
   layout.viewRadius = 2;
-  const auto places = grid(900, 1.2, 0, 1);
+  const auto places = vpLampGrid(900, 1.2, 0, 1);
   const size_t laid = layout.lay(places, 30).repeatedTriples;
   layout.choices = 1; // any that no lamp in view has
   layout.passes = 0;
@@ -150,7 +154,7 @@ TEST(IdentifierLayout, IsFarBetterThanChance)
 TEST(IdentifierLayout, GivesTheSameForTheSameSeedOnly)
 {
   vpIdentifierLayout layout;
-  const auto places = grid(200, 1.2, 0.2, 1);
+  const auto places = vpLampGrid(200, 1.2, 0.2, 1);
   const std::vector<size_t> first = layout.lay(places, 40).identifiers;
   EXPECT_EQ(layout.lay(places, 40).identifiers, first);
   layout.seed = 2;
@@ -166,7 +170,7 @@ TEST(IdentifierLayout, TakesLampsInOnePlace)
 
 TEST(IdentifierLayout, NamesTheArgumentThatIsWrong)
 {
-  const auto places = grid(4, 1, 0, 1);
+  const auto places = vpLampGrid(4, 1, 0, 1);
   const auto expectNamed = [](const std::string &name, const std::vector<Eigen::Vector3d> &positions,
                               size_t identifiers, const vpIdentifierLayout &layout = vpIdentifierLayout()) {
     vpExpectError([&] { layout.lay(positions, identifiers); }, {name});
