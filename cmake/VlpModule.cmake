@@ -85,8 +85,8 @@ macro(vp_create_module)
     set_target_properties(${the_module} PROPERTIES VERSION ${visp_vlp_VERSION}
                           SOVERSION ${visp_vlp_VERSION_MAJOR}.${visp_vlp_VERSION_MINOR})
   endif()
-  install(TARGETS ${the_module} EXPORT visp_vlpTargets)
-  install(FILES ${vlp_headers} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/visp3/${name}")
+  install(TARGETS ${the_module} EXPORT visp_vlpTargets COMPONENT dev LIBRARY COMPONENT libraries NAMELINK_COMPONENT dev)
+  install(FILES ${vlp_headers} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/visp3/${name}" COMPONENT dev)
 endmacro()
 
 # vp_add_tests([DEPENDS_ON <module>...]): a program for each test/**/*.cpp of the module's own folder, run as ViSP does.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <system_error>
 
@@ -23,6 +24,17 @@ namespace
 std::string notEmpty(const std::string &text)
 {
   return text.empty() ? "an empty name" : "";
+}
+
+//! A name that is not there, in the data that was installed with this program, if it is there.
+std::string installed(const std::string &name)
+{
+  namespace fs = std::filesystem;
+  std::error_code failure;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure),
+                 there = program.parent_path().parent_path() / VLP_INSTALLED_DATA / name;
+  const bool here = fs::exists(name, failure) || fs::path(name).is_absolute();
+  return !here && fs::exists(there, failure) ? there.string() : name;
 }
 
 //! What takes a whole number; CLI11 wraps -1 around and takes the largest for what is too large.
@@ -44,10 +56,20 @@ void vpAddName(CLI::App &app, const std::string &option, std::string &name, cons
   app.add_option(option, name, help)->type_name(type)->check(notEmpty);
 }
 
-void vpAddNames(CLI::App &app, const std::string &option, std::vector<std::string> &names, bool several,
-                const std::string &type, const std::string &help)
+void vpAddInput(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
+                const std::string &help)
 {
-  app.add_option(option, names, help)->type_name(type)->expected(several ? -1 : 1)->check(notEmpty);
+  app.add_option(option, name, help)->type_name(type)->check(notEmpty)->transform(installed);
+}
+
+void vpAddInputs(CLI::App &app, const std::string &option, std::vector<std::string> &names, bool several,
+                 const std::string &type, const std::string &help)
+{
+  app.add_option(option, names, help)
+      ->type_name(type)
+      ->expected(several ? -1 : 1)
+      ->check(notEmpty)
+      ->transform(installed);
 }
 
 void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,

@@ -24,9 +24,16 @@ BEGIN_VISP_NAMESPACE
 void vpAddName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
                const std::string &help);
 
-//! An option that takes one such text, or \e several, one or more.
-void vpAddNames(CLI::App &app, const std::string &option, std::vector<std::string> &names, bool several,
-                const std::string &type, const std::string &help);
+/*!
+  An option that takes the name of a file or folder to read. A name that is not there is looked for in the
+  data that was installed with the program: data/scenarios/servo.yaml is read wherever the program is called.
+*/
+void vpAddInput(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
+                const std::string &help);
+
+//! An option that takes one such name, or \e several, one or more.
+void vpAddInputs(CLI::App &app, const std::string &option, std::vector<std::string> &names, bool several,
+                 const std::string &type, const std::string &help);
 
 //! An option that takes one of a few words.
 void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,

@@ -46,9 +46,9 @@ private:
 
 void vpFrameOptions::add(CLI::App &app)
 {
-  vpAddNames(app, "--run", runs, manyRuns, "DIR",
-             manyRuns ? "frames of recorded or simulated runs: DIR/frames.csv"
-                      : "frames of a recorded or simulated run: DIR/frames.csv");
+  vpAddInputs(app, "--run", runs, manyRuns, "DIR",
+              manyRuns ? "frames of recorded or simulated runs: DIR/frames.csv"
+                       : "frames of a recorded or simulated run: DIR/frames.csv");
   vpAddName(app, "--images", pattern, "PATTERN", "frames from numbered pictures, as 'frames/%04d.png'");
   app.add_option("--image", files, "frames from these pictures, in this order")->type_name("FILE");
   vpAddName(app, "--video", video, "FILE", "frames from a video; a lossy one blurs fine stripes");

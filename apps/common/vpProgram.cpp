@@ -61,15 +61,24 @@ int vpExitStatus(const std::function<vpExitCode()> &run)
 
 bool vpParseCommandLine(CLI::App &app, int argc, char **argv)
 {
+  app.set_version_flag("--version", vpVersionOf(app.get_name()), "Print the version and exit");
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp &) {
     std::cout << app.help();
     return false;
+  } catch (const CLI::CallForVersion &version) {
+    std::cout << version.what() << "\n";
+    return false;
   } catch (const CLI::ParseError &error) {
     throw vpException(vpException::badValue, vpOneLine(error.what()) + " (--help explains the options)");
   }
   return true;
+}
+
+std::string vpVersionOf(const std::string &program)
+{
+  return program + " (visp_vlp) " VLP_VERSION;
 }
 
 std::string vpOneLine(const std::string &text)

@@ -35,10 +35,13 @@ int vpRunProgram(const std::string &name, const std::function<vpExitCode()> &run
 int vpExitStatus(const std::function<vpExitCode()> &run);
 
 /*!
-  \return False where `--help` was asked for and is printed. \throw vpException (badValue) with one line where
-  the usage is bad.
+  \return False where `--help` or `--version` was asked for and is printed. \throw vpException (badValue) with
+  one line where the usage is bad.
 */
 bool vpParseCommandLine(CLI::App &app, int argc, char **argv);
+
+//! What `--version` prints of a program: a line.
+std::string vpVersionOf(const std::string &program);
 
 //! \e text as one line: control characters escaped. For what comes from outside, as names of files.
 std::string vpOneLine(const std::string &text);

@@ -44,6 +44,10 @@ vpExitCode run(int argc, char **argv)
     std::cout << help;
     return vpExitCode::done;
   }
+  if (command == "--version") {
+    std::cout << vpVersionOf("vlp-calibrate") << "\n";
+    return vpExitCode::done;
+  }
   vpInterrupt::install();
   --argc;
   ++argv;

@@ -54,9 +54,9 @@ struct Options {
     app.footer(footer);
     app.get_formatter()->column_width(28);
     frames.add(app);
-    vpAddName(app, "--rig", rig, "FILE",
-              "what is known of the camera; default with --run: DIR/rig.yaml if there is one");
-    vpAddName(app, "--lamps", lamps, "FILE", "lamps of known frequency; default with --run: DIR/lamps.yaml");
+    vpAddInput(app, "--rig", rig, "FILE",
+               "what is known of the camera; default with --run: DIR/rig.yaml if there is one");
+    vpAddInput(app, "--lamps", lamps, "FILE", "lamps of known frequency; default with --run: DIR/lamps.yaml");
     vpAddName(app, "--frequency", frequency, "HZ", "of the only lamp, or of all, in place of --lamps");
     vpAddName(app, "--ppm", ppm, "PPM", "standard deviation of that frequency (default 50: a crystal)");
     vpAddName(app, "--out", out, "DIR",

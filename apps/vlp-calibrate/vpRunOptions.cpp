@@ -49,8 +49,8 @@ double vpPositiveOption(const std::string &option, const std::string &text)
 void vpRunOptions::add(CLI::App &app)
 {
   frames.add(app);
-  vpAddName(app, "--rig", rig, "FILE", "first guess of the rig; default with --run: DIR/rig.yaml");
-  vpAddName(app, "--lamps", lamps, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
+  vpAddInput(app, "--rig", rig, "FILE", "first guess of the rig; default with --run: DIR/rig.yaml");
+  vpAddInput(app, "--lamps", lamps, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
   vpAddName(
       app, "--odometry", odometry, "FILE",
       "timestamp_s,v_m_s,w_rad_s on the frames' clock; default with --run: DIR/odometry.csv if there is one");

@@ -99,8 +99,8 @@ bool vpLocateOptions::parse(int argc, char **argv)
   app.footer(footer);
   app.get_formatter()->column_width(28);
   std::string attitude = "mount", solver = "all";
-  vpAddName(app, "--rig", rigFile, "FILE", "the camera on the robot; default with --run: DIR/rig.yaml");
-  vpAddName(app, "--lamps", lampsFile, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
+  vpAddInput(app, "--rig", rigFile, "FILE", "the camera on the robot; default with --run: DIR/rig.yaml");
+  vpAddInput(app, "--lamps", lampsFile, "FILE", "the lamp map; default with --run: DIR/lamps.yaml");
   frames.manyRuns = false;
   frames.ofCamera = 0;
   frames.add(app);

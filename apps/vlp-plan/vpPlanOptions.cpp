@@ -131,7 +131,7 @@ bool vpPlanOptions::parse(int argc, char **argv)
   std::string heights, size, oscillator = "crystal", wrong, snr, dutyList, frequencies, chipRate, view,
                              code = "manchester";
   size_t bits = format.bits, apart = format.minDistance;
-  vpAddName(app, "--rig", rig, "FILE", "the camera on the robot");
+  vpAddInput(app, "--rig", rig, "FILE", "the camera on the robot");
   vpAddName(app, "--heights", heights, "FROM:TO", "m, how far above the camera the lamps will hang");
   vpAddName(app, "--diameter", size, "M",
             "of the lamps, or side of square ones; of those without one in a map");

@@ -97,7 +97,7 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   bool openLoop = false, odometryOnly = false, headless = false;
   vpAddName(app, "--robot", robot, "ROBOT", "sim, opencr:usb or opencr:DEVICE");
   app.add_flag("--list-robots", listRobots, "print the boards that are attached by USB, and end");
-  vpAddName(app, "--scenario", scenario, "FILE", "sim: the world, see data/scenarios/servo.yaml");
+  vpAddInput(app, "--scenario", scenario, "FILE", "sim: the world, see data/scenarios/servo.yaml");
   vpAddSeed(app, "--seed", seed, "sim: of all that is left to chance (default 1)");
   app.add_flag("--typical", typical, "sim: draw the errors of a typical rig, unknown to the robot");
   app.add_flag("--wheels-only", wheelsOnly,
@@ -105,10 +105,10 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   app.add_flag("--real-time", realTime,
                "sim: as fast as the world really goes, camera in a thread of its own");
   vpAddName(app, "--latency", delay, "S", "sim: of the localizer after a picture's readout (default 0.02 s)");
-  vpAddName(app, "--rig", rigFile, "FILE", "the camera on the robot; default with sim: the scenario's");
-  vpAddName(app, "--lamps", lampsFile, "FILE", "the lamp map; default with sim: the scenario's");
+  vpAddInput(app, "--rig", rigFile, "FILE", "the camera on the robot; default with sim: the scenario's");
+  vpAddInput(app, "--lamps", lampsFile, "FILE", "the lamp map; default with sim: the scenario's");
   camera.add(app);
-  vpAddName(app, "--path", pathFile, "FILE", "the path to drive, see data/paths");
+  vpAddInput(app, "--path", pathFile, "FILE", "the path to drive, see data/paths");
   vpAddName(app, "--speed", speed, "M/S", "along the path (default 0.1)");
   vpAddName(app, "--gain", gain, "1/S", "lambda of the visual task for small errors (default 2.5)");
   size_t laps = loop.follower.reference.laps;

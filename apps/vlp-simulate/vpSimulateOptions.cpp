@@ -40,7 +40,7 @@ bool vpSimulateOptions::parse(int argc, char **argv)
   CLI::App app(description, "vlp-simulate");
   app.footer(footer);
   app.get_formatter()->column_width(28);
-  vpAddName(app, "--scenario", scenario, "FILE", "what to draw");
+  vpAddInput(app, "--scenario", scenario, "FILE", "what to draw");
   vpAddName(app, "--out", out, "DIR", "the run folder to make; new, or empty");
   vpAddSeed(app, "--seed", seed, "what is left to chance; default 1");
   vpAddChoice(app, "--format", format, {"png", "pgm"},
