@@ -11,7 +11,8 @@ cmake -G Ninja -S "$here/consumer" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -
 cmake --build "$work/build"
 "$work/build/consumer"
 
-# The installed programs find their libraries too.
+# The installed programs find their libraries, too, and the data that was installed with them.
 for program in "$work"/prefix/bin/*; do
   [ ! -x "$program" ] || "$program" --help >/dev/null
 done
+(cd "$work" && prefix/bin/vlp-locate --run data/paper-room --poses poses.tum && [ "$(wc -l <poses.tum)" -ge 9 ])
