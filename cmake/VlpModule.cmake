@@ -9,6 +9,7 @@ option(VLP_BUILD_TESTS "Build the tests" ON)
 if(VLP_BUILD_TESTS)
   enable_testing()
 endif()
+add_custom_target(tested) # what ctest runs: all but the benchmarks that are run by hand
 include(GNUInstallDirs)
 
 # VISPConfig.cmake appends -fopenmp -fPIC to the flags of whoever reads it; ours stay as they were.
@@ -99,6 +100,7 @@ macro(vp_add_tests)
       get_filename_component(test_name "${test_source}" NAME_WE)
       add_executable(${test_name} "${test_source}")
       target_link_libraries(${test_name} PRIVATE ${the_module} ${vlp_test_depends})
+      add_dependencies(tested ${test_name})
       add_test(NAME ${test_name} COMMAND ${test_name} -c -d)
     endforeach()
   endif()
