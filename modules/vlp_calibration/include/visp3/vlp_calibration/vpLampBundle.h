@@ -44,7 +44,7 @@ struct VISP_EXPORT vpOdometryError {
   double turnBias = 0;     // rad/s
 };
 
-//! What was found, with its doubt.
+//! What was found, with its covariance.
 struct VISP_EXPORT vpBundleResult {
   bool valid = false;
   std::string refusal;                             // one line that says what to do, where not valid
@@ -60,10 +60,10 @@ struct VISP_EXPORT vpBundleResult {
   double rms = 0;         // px, of the residuals used, along each axis
   double imageFactor = 1; // by which the stated standard deviations of image points had to be multiplied
   vpOdometryError odometry;
-  //! m, standard deviation that places of lamps were given which were to be held, and do not explain the
-  //! pictures; 0 where they do.
-  double mapDoubt = 0;
-  std::vector<size_t> doubted; // these lamps
+  //! m, standard deviation that was added to positions of lamps which were to be held, but which do not
+  //! explain the pictures; 0 where they do.
+  double inflatedLampSigma = 0;
+  std::vector<size_t> inflatedLamps; // these lamps
   /*!
     Combinations of rig parameters that the pictures do not tell apart, or only by effects smaller than a
     detector's systematic error: each as text, `u0 with x`. Priors take no part in this.
@@ -100,10 +100,10 @@ public:
 
   //! Standard deviations of the rig's parameters about what it says: 0 held, free without a prior.
   vpRigVector rigSigma = vpRigVector::Zero();
-  //! Of each lamp's position about the map's, m: 0 held, free where the map's place is not believed at all.
+  //! Of each lamp's position about the map's, m: 0: held; free: without a prior.
   std::vector<double> lampSigma;
-  //! Where no lamp's place is believed: its first lamp then stays where the map has it in x and y, and the
-  //! second in the direction from there that the map has.
+  //! Where no lamp has a prior or is held: a measured distance gives the scale. Its first lamp then keeps x
+  //! and y of the map, and the second one its direction from there.
   std::optional<vpLampDistance> distance;
 
   double slip = 0.01;           // of each wheel's way, standard deviation

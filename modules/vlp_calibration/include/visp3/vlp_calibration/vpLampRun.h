@@ -32,7 +32,7 @@ struct VISP_EXPORT vpLampView {
   std::string name;     // of the frame, for messages
   std::vector<vpLampImage> images;
 
-  //! Of the observations those that are lamps of \e map, whole and with an image point of known doubt.
+  //! Of the observations those that are lamps of \e map, whole and with an image point of known covariance.
   static vpLampView of(double timestamp, const std::string &name,
                        const std::vector<vpLampObservation> &observations, const vpLampMap &map);
 

@@ -36,7 +36,7 @@ struct VISP_EXPORT vpSurveyResult {
 
 /*!
   Where lamps hang, from a drive with odometry under them and two lamps or more measured by hand, or one
-  distance: a bundle adjustment over the whole run. Of the other lamps the map's places are not believed, only
+  distance: a bundle adjustment over the whole run. Of the other lamps the map's positions are not used, only
   held against what is found in the end.
 
   The rig's mount takes part with the standard deviations that its file states: calibrate the mount first.
@@ -54,9 +54,9 @@ public:
 
   /*!
     Measured lamps that do not explain the pictures are taken for as uncertain as these show
-    (vpBundleResult::mapDoubt). Refuses, with one line that says what to do: too few frames, a robot that
-    stands still, odometry of another clock, unit or sign, measured lamps that are swapped. \throw vpException
-    (badValue) where neither two measured lamps nor a distance is given, or both.
+    (vpBundleResult::inflatedLampSigma). Refuses, with one line that says what to do: too few frames, a robot
+    that stands still, odometry of another clock, unit or sign, measured lamps that are swapped. \throw
+    vpException (badValue) where neither two measured lamps nor a distance is given, or both.
   */
   vpSurveyResult solve(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map) const;
 

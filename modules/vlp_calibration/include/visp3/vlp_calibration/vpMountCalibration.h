@@ -38,9 +38,10 @@ public:
 
   /*!
     Lamps of \e map that state a sigma take part with it, others count as exact, unless the pictures show that
-    they are not: then as uncertain as these show (vpBundleResult::mapDoubt). Refuses, with one line that
-    says what to do: too few frames, a robot that stands still, odometry of another clock, unit or sign, lamps
-    that are swapped in the map, lamps that hang elsewhere, parameters that the pictures do not separate.
+    they are not: then as uncertain as these show (vpBundleResult::inflatedLampSigma). Refuses, with one line
+    that says what to do: too few frames, a robot that stands still, odometry of another clock, unit or sign,
+    lamps that are swapped in the map, lamps that hang elsewhere, parameters that the pictures do not
+    separate.
   */
   vpBundleResult solve(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map) const;
 

@@ -48,7 +48,7 @@ VISP_EXPORT vpVlpRig vpMovedRig(const vpVlpRig &rig, const vpRigVector &step);
 VISP_EXPORT vpRigVector vpRigStep(const vpVlpRig &from, const vpVlpRig &to);
 
 /*!
-  What the rig's file says of its own doubt, as standard deviations of a step: 0 where it says nothing.
+  The standard deviations that the rig's file states, as those of a step: 0 where it states none.
 */
 VISP_EXPORT vpRigVector vpStatedSigma(const vpVlpRig &rig);
 

@@ -64,11 +64,11 @@ struct VISP_EXPORT vpLedIdReuse {
   which lamps of a map it will confuse.
 
   Distances. What is measured of a lamp scatters about what the map says with the standard deviations of
-  vpStripePrediction. The recogniser holds a measurement against all lamps with that measurement's own doubt.
-  So the distance of two lamps is that of their features in units of the larger of their two standard
-  deviations, all features together: d^2 = sum ((x1 - x2) / max(s1, s2))^2. A measurement is nearer to the
-  wrong one of the two with probability Q(d / 2), Q the upper tail of the normal distribution; of a lamp with
-  several neighbours the sum of these is a bound.
+  vpStripePrediction. The recogniser compares a measurement with all lamps, by that measurement's own standard
+  deviations. So the distance of two lamps is that of their features in units of the larger of their two
+  standard deviations, all features together: d^2 = sum ((x1 - x2) / max(s1, s2))^2. A measurement is nearer
+  to the wrong one of the two with probability Q(d / 2), Q the upper tail of the normal distribution; of a
+  lamp with several neighbours the sum of these is a bound.
 
   Error. Of neighbours on both sides, 2 Q(d / 2) <= maxError: d >= 6.6 for 1 in 1000.
 

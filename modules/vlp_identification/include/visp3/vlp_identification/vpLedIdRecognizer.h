@@ -61,7 +61,7 @@ public:
   double leastShape = 1e-3;        // probability of its shape below which a whole outline is another lamp's
   double leastBlinking = 2. / 3;   // of the light in an outline, that its lamp's stripes have to explain
   double minConfidence = 0.99;     // probability below which no id is given
-  double maxFrequencyDoubt = 0.03; // share of the frequency: less certain stripes are recognised as nothing
+  double maxFrequencySigma = 0.03; // share of the frequency: less certain stripes are recognised as nothing
   double maxSpread = 4;            // frequencySigma over frequencyBound, above which there is no id
   double dutyError = 0.03;         // systematic error of a measured duty, standard deviation
   double phaseError = 0.01;        // of a measured phase difference, periods

@@ -15,8 +15,8 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! Standard deviations with which the recogniser compares a lamp's stripes with what the map says of them.
-struct VISP_EXPORT vpStripeDoubt {
+//! Standard deviations with which the recogniser compares a lamp's stripes with those that the map predicts.
+struct VISP_EXPORT vpStripeUncertainty {
   double frequency = 0;       // Hz: estimate, row time and oscillator together
   double duty = 0;            // estimate and vpLedIdRecognizer::dutyError together
   double phaseDifference = 0; // periods, of two pulses; estimate and vpLedIdRecognizer::phaseError together
@@ -32,7 +32,7 @@ struct VISP_EXPORT vpStripeDoubt {
 
   (Cramer-Rao bound; Rife and Boorstyn 1974). A pulse of duty d has the fundamental (4 / pi) sin(pi d) A, and
   an exposure T_e weakens it by |sinc(f T_e)|. What vpStripeAnalyzer reaches lies below `margin` times that
-  bound (BENCHMARK.md, "The frequency of stripes").
+  bound (tests/bench/stripes.md).
 */
 class VISP_EXPORT vpStripePrediction
 {
@@ -88,7 +88,7 @@ public:
     frequency may be off by; all of it is taken for a standard deviation, since the analyser's own ones reach
     that, and of all phases against the lines the worst. In Hz and periods.
   */
-  vpStripeDoubt hiddenEdges(const vpModulation &modulation, double lines) const;
+  vpStripeUncertainty hiddenEdges(const vpModulation &modulation, double lines) const;
 
   /*!
     Standard deviations of duty and phase difference by the stripes, edges all seen: from the Fisher
@@ -96,30 +96,30 @@ public:
     offset and amplitude together, averaged over the phase. Of a pulse about as long as the exposure the
     stripes do not say which is which.
   */
-  vpStripeDoubt shapeSigma(const vpModulation &modulation, double lines) const;
+  vpStripeUncertainty shapeSigma(const vpModulation &modulation, double lines) const;
 
   //! All of it together, with row time, oscillator (standard deviation in 1e-6 of the frequency) and the
   //! recogniser's own errors.
-  vpStripeDoubt doubt(const vpModulation &modulation, double lines, double oscillatorPpm) const;
+  vpStripeUncertainty uncertainty(const vpModulation &modulation, double lines, double oscillatorPpm) const;
   //! The same where \e shape is known, which changes slowly with frequency and takes longest.
-  vpStripeDoubt together(const vpModulation &modulation, double lines, double oscillatorPpm,
-                         const vpStripeDoubt &shape) const;
+  vpStripeUncertainty together(const vpModulation &modulation, double lines, double oscillatorPpm,
+                               const vpStripeUncertainty &shape) const;
 
   //! Root mean square of what a line of the lamp may be off by, as a share of A: noise, and the model's
   //! error.
   double lineNoise(double duty) const;
 
   //! How far measurements will scatter, at each of some phases of the lamp against the lines: with the range
-  //! that hidden edges leave there as a uniform distribution. Mostly far less than doubt(), which has the
-  //! worst.
-  std::vector<vpStripeDoubt> scatter(const vpModulation &modulation, double lines,
-                                     double oscillatorPpm) const;
+  //! that hidden edges leave there as a uniform distribution. Mostly far less than uncertainty(), which has
+  //! the worst.
+  std::vector<vpStripeUncertainty> scatter(const vpModulation &modulation, double lines,
+                                           double oscillatorPpm) const;
 
 private:
-  vpStripeDoubt hiddenEdgesAt(const vpModulation &modulation, double lines, int trial,
-                              double negligible) const;
-  vpStripeDoubt sum(const vpModulation &modulation, double lines, double oscillatorPpm,
-                    const vpStripeDoubt &shape, const vpStripeDoubt &hidden) const;
+  vpStripeUncertainty hiddenEdgesAt(const vpModulation &modulation, double lines, int trial,
+                                    double negligible) const;
+  vpStripeUncertainty sum(const vpModulation &modulation, double lines, double oscillatorPpm,
+                          const vpStripeUncertainty &shape, const vpStripeUncertainty &hidden) const;
   double takenForExposure(const vpModulation &modulation) const;
   std::pair<size_t, size_t> linesUnder(double lines, int trial) const;
 

@@ -70,8 +70,8 @@ public:
 
   double acceleration = 0.5;   // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
   double turnAcceleration = 3; // rad/s^2/sqrt(Hz), likewise
-  double startShare = 0.1;     // of both from start() on, until rouse() or calm()
-  double drift = 0.002;        // m/sqrt(s), of z where the robot is restless: a floor is not quite flat
+  double startShare = 0.1;     // of both from start() on, until allowManoeuvre() or setManoeuvreShare()
+  double drift = 0.002;        // m/sqrt(s), of z where the robot moves: a floor is not quite flat
   double tiltDrift = 0.05;     // rad/sqrt(s), of roll and pitch where the attitude is free
   double startPlace = 0.3;     // m, standard deviation of x, y and z at the start, before its lamps are seen
   double startTurn = 0.3;      // rad, likewise of yaw
@@ -89,7 +89,7 @@ public:
                                    // mount and none for its lens
   double focalLength = 0.003;      // share, likewise
   double claimedTilt =
-      0.004; // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
+      0.004; // rad, widenClaims(): standard deviation added to roll and pitch, each time twice as much
   double claimedPlace = 0.002; // m, likewise to each coordinate of each lamp
   bool freeAttitude = false;   // roll and pitch change, and are as uncertain as the fix at the start
 
@@ -130,7 +130,7 @@ public:
   void advance(double time);
   double time() const { return m_time; }
 
-  //! What a lamp's ray says, before it is believed.
+  //! A lamp's ray compared with its prediction, before the update.
   struct Innovation {
     bool inFront = false;                                 // of the camera, else the rest means nothing
     Eigen::Vector2d ray = Eigen::Vector2d::Zero();        // measured minus predicted, normalised units
@@ -149,9 +149,9 @@ public:
   void update(const vpLampSight &lamp);
 
   //! The robot may start, stop or turn at any time.
-  void rouse() { m_unrest = 1; }
+  void allowManoeuvre() { m_manoeuvreShare = 1; }
   //! Its velocity is constant but for that share of the random accelerations.
-  void calm(double share) { m_unrest = share; }
+  void setManoeuvreShare(double share) { m_manoeuvreShare = share; }
 
   /*!
     Mean and covariance of a mixture. \param parts Copies of one filter that went on under different
@@ -159,10 +159,10 @@ public:
   */
   void mix(const std::vector<const vpVlpFilter *> &parts, const std::vector<double> &weights);
 
-  //! Takes the rig's attitude and the map's places for less certain than they say, by claimedTilt and
-  //! claimedPlace; from the next start() on, since what was estimated before rests on the claims.
-  void doubtClaims();
-  bool doubtsClaims() const { return m_placeDoubt > 0; }
+  //! Adds claimedTilt and claimedPlace to the stated sigmas of the rig's attitude and the map's places, from
+  //! the next start() on: earlier estimates rest on the stated sigmas alone.
+  void widenClaims();
+  bool claimsWidened() const { return m_extraPlaceSigma > 0; }
 
   //! After start(): the velocity is what led here from \e before (m, of x and y in w; rad), \e since s ago.
   void comeFrom(const vpVlpFix &before, double since);
@@ -263,7 +263,10 @@ private:
   struct Predicted;
   Predicted predict(const vpLampSight &lamp) const;
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
-  double placeSigma(const vpLampSight &lamp) const { return std::hypot(lamp.positionSigma, m_placeDoubt); }
+  double placeSigma(const vpLampSight &lamp) const
+  {
+    return std::hypot(lamp.positionSigma, m_extraPlaceSigma);
+  }
   Innovation innovation(const vpLampSight &lamp, const Predicted &predicted) const;
   //! \param stated The covariance that the lamp's ray came with.
   void weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated);
@@ -299,8 +302,8 @@ private:
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
   std::vector<vpOdometry> m_startOdometry;            // m_odometry at the start
   std::vector<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
-  double m_tiltDoubt = 0;             // rad, added to what the rig says of roll and pitch
-  double m_placeDoubt = 0;            // m, added to what the map says of its lamps
+  double m_extraTiltSigma = 0;        // rad, added to the rig's sigma of roll and pitch
+  double m_extraPlaceSigma = 0;       // m, added to the map's sigma of its lamps
   double m_noise = 1;                 // variance of the lamps' points, as a share of the stated one
   int m_weighed = 0;                  // points that it rests on
   Eigen::Matrix4d m_information = Eigen::Matrix4d::Zero(); // of x, y, z and yaw, by the lamps since the mark
@@ -308,7 +311,7 @@ private:
   double m_imageSpeed = 0;                                 // px/s, of the fastest of them
   Eigen::Matrix4d m_common =
       Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
-  double m_unrest = 1;         // share of the random accelerations
+  double m_manoeuvreShare = 1; // share of the random accelerations
   double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 

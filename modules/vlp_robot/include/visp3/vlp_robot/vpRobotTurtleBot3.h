@@ -56,9 +56,9 @@ struct VISP_EXPORT vpTurtleBot3Status {
   A TurtleBot3 over its OpenCR board with ROBOTIS' firmware for ROS 2 (DYNAMIXEL protocol 2.0, id 200).
 
   Commands. setVelocity() writes a new heartbeat value and then the command, each confirmed by the board, and
-  returns or throws within commandDeadline + stopDeadline. Where a confirmation is in doubt
-  (vpDynamixelBus::doubtful()) both are read back: the heartbeat's value, another one in each call, says that
-  it is this command.
+  returns or throws within commandDeadline + stopDeadline. Where a confirmation may belong to an
+  earlier request (vpDynamixelBus::answerMayBeStale()), both are read back. The heartbeat's value differs in
+  each call, and so identifies this command.
 
   Watchdog. The board stands 0.5 s after the last change of the heartbeat. Only setVelocity() changes it, no
   thread does: a loop that hangs, a process killed and a cable pulled all stop the base. The first value

@@ -39,8 +39,8 @@ struct VISP_EXPORT vpServoLog {
 
   //! Off the path, by the truth; empty where it is not known.
   std::vector<vpTrackError> trueErrors() const;
-  //! Off the path, as the loop believed.
-  std::vector<vpTrackError> believedErrors() const { return vpTrackErrorsOf(path, run); }
+  //! Errors from the path, by the poses that the loop estimated.
+  std::vector<vpTrackError> estimatedErrors() const { return vpTrackErrorsOf(path, run); }
 };
 
 END_VISP_NAMESPACE

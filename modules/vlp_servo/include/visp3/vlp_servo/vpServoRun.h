@@ -70,7 +70,7 @@ struct VISP_EXPORT vpTrackError {
 VISP_EXPORT std::vector<vpTrackError> vpTrackErrorsOf(const vpPath &path, const vpServoRun &run,
                                                       const std::function<vpHomogeneousMatrix(double)> &wMb);
 
-//! The same of the poses that the run itself believed in.
+//! The same of the poses that the run itself estimated.
 VISP_EXPORT std::vector<vpTrackError> vpTrackErrorsOf(const vpPath &path, const vpServoRun &run);
 
 END_VISP_NAMESPACE

@@ -53,7 +53,7 @@ public:
   //! of range.
   vpServoSimulation(const vpScenario &scenario, std::uint64_t seed,
                     const vpServoSimulationSettings &settings);
-  //! The same with a localizer that believes something else of rig or lamps than the scenario says it does.
+  //! The same with a localizer that has another rig or other lamps than the scenario's.
   vpServoSimulation(const vpScenario &scenario, std::uint64_t seed, const vpServoSimulationSettings &settings,
                     vpVlpLocalizer localizer);
   ~vpServoSimulation() override;
@@ -105,7 +105,7 @@ public:
 
   //! True pose of the base at \e time, s, up to now.
   vpHomogeneousMatrix wMb(double time);
-  //! What the robot believes of its camera and of the lamps.
+  //! Camera and lamps as the robot's files state them.
   const vpVlpRig &rig() const { return m_simulation->rig(); }
   const vpLampMap &map() const { return m_simulation->map(); }
 

@@ -19,8 +19,8 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  What a scenario file says: the files that a robot believes, where the world differs from them, how the robot
-  moves, and what is left to chance. A seed makes a vpSimulation of it.
+  What a scenario file states: the robot's files, where the simulated world differs from them, how the robot
+  moves, and what is drawn at random. A seed makes a vpSimulation of it.
 */
 struct VISP_EXPORT vpScenario {
   //! Where the camera and the robot differ from the rig file. Added to, or multiplied with, what that says.
@@ -66,8 +66,8 @@ struct VISP_EXPORT vpScenario {
     vpSimulatorTurtleBot3Settings robot;
   };
 
-  vpVlpRig rig;  // as the robot believes; its exposure already in whole lines where the camera has it so
-  vpLampMap map; // as the robot believes
+  vpVlpRig rig;  // as the robot's files state; its exposure already in whole lines where the camera has it so
+  vpLampMap map; // as the robot's files state
   Deviation deviation;
   Draw draw;
   vpSimulatedCamera camera; // all but its rig

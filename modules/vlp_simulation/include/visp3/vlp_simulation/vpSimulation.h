@@ -44,7 +44,7 @@ public:
   //! Wheel odometry up to the newest frame; empty for a robot that is put in places.
   std::vector<vpOdometry> odometry() const { return m_motion->odometry(); }
 
-  //! What the robot believes of its camera and of the lamps.
+  //! Camera and lamps as the robot's files state them.
   const vpVlpRig &rig() const { return m_scenario.rig; }
   const vpLampMap &map() const { return m_scenario.map; }
   //! What is true.
