@@ -24,7 +24,7 @@ BEGIN_VISP_NAMESPACE
 
   The state, with its covariance:
   - the pose: x, y, z, yaw, and roll and pitch about x and y of b. The last two are constants of the rig, as
-    uncertain as its rotationSigma says (known where that is 0): the base stands level and the camera leans
+    uncertain as its rotationSigma states (known where that is 0): the base stands level and the camera leans
     about its own centre. Where the attitude is free both lean as one, and change;
   - the velocity of the base along x and y of b and its turn rate, constant but for random accelerations;
   - the odometry's errors: scales of speed and turn rate, bias of the turn rate;
@@ -41,7 +41,7 @@ BEGIN_VISP_NAMESPACE
   several of them by how likely the lamps were (Blom and Bar-Shalom 1988).
 
   Odometry is the velocity's mean over the interval of each sample. Where it is followed, the base moves
-  between samples on the arc that they say, and accelerates at random where there is none.
+  between samples on the arc of that velocity, and accelerates at random where there is none.
 
   \code
   vpVlpFilter filter(rig);
@@ -58,7 +58,7 @@ public:
   //! Thresholds on the covariance, no more: whoever drives a robot decides by the covariance itself.
   enum class State {
     starting, //!< no pose yet
-    tracking, //!< the pose is as certain as trackingSigma and trackingYaw say
+    tracking, //!< the pose is as certain as trackingSigma and trackingYaw demand
     coasting, //!< less certain, yet more than lostSigma and lostYaw: a lamp or two, or none, for a while
     lost      //!< less certain than these; a new start is needed
   };
@@ -96,7 +96,7 @@ public:
   enum class Odometry {
     ignored,
     measured, //!< a measurement of a velocity that is constant but for the random accelerations
-    followed  //!< the velocity is what it says
+    followed  //!< the velocity is the odometry's
   };
   Odometry odometry = Odometry::followed;
 
@@ -170,7 +170,7 @@ public:
   /*!
     Linearises what follows about the path on which \e corrected has come to its mark(), up to conclude(): the
     estimate stays what it is, and is carried along as an offset from that path (iterated filter with the
-    interval before the mark smoothed, Bell and Cathey 1993). \return False along odometry, which says the
+    interval before the mark smoothed, Bell and Cathey 1993). \return False along odometry, which measures the
     path well enough: then nothing changes.
   */
   bool linearizeAbout(const vpVlpFilter &corrected);

@@ -39,7 +39,7 @@ struct VISP_EXPORT vpRobotTurtleBot3Settings {
   void check() const;
 };
 
-//! What the board says of itself.
+//! Status reported by the board.
 struct VISP_EXPORT vpTurtleBot3Status {
   double batteryVoltage = 0; // V; a TurtleBot3's three cells are empty at 11 V
   double batteryCharge = 0;  // share, 0 to 1
@@ -70,9 +70,9 @@ struct VISP_EXPORT vpTurtleBot3Status {
   the wheels in it have turned no further than five times their top speed allows. The board measures every
   20 ms; who asks more often gets the same sample again.
 
-  Errors. After an ioError the base was told to stop as far as it could be told, and takes no command until
-  reconnect() has worked; stop() always tries. The heartbeat rests meanwhile. Where a bus is so bad that a
-  deadline passes, that is an ioError.
+  Errors. On an ioError a stop is sent to the base, as far as the line allows. It takes no command until
+  reconnect() has worked; stop() always tries. The heartbeat is not changed meanwhile. Where a bus is so bad
+  that a deadline passes, that is an ioError.
 
   One thread at a time. The destructor stops the base.
 

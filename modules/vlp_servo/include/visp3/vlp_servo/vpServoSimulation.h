@@ -85,8 +85,8 @@ private:
   The same world in real time, as a real robot and a real camera are: a base and a source of frames that two
   threads use side by side, on the host's clock.
 
-  next() waits for the end of a picture's readout, as a camera does. Pictures that were read out while nobody
-  asked are left out but for the newest one.
+  next() waits for the end of a picture's readout, as a camera does. Of the pictures that were read out
+  between two calls only the newest one is given.
 */
 class VISP_EXPORT vpLiveSimulation : public vpMobileBase, public vpFrameSource
 {
