@@ -149,17 +149,17 @@ std::vector<vpLampChart> vpLampChartsOf(const vpImage<unsigned char> &I,
                                         const std::vector<vpLampObservation> &observations,
                                         const vpLedDetector &detector)
 {
-  std::vector<size_t> doubtful;
+  std::vector<size_t> unidentified;
   for (size_t i = 0; i < observations.size(); ++i) {
     if (observations[i].id.empty() && blinks(observations[i])) {
-      doubtful.push_back(i);
+      unidentified.push_back(i);
     }
   }
-  std::stable_sort(doubtful.begin(), doubtful.end(), [&](size_t a, size_t b) {
+  std::stable_sort(unidentified.begin(), unidentified.end(), [&](size_t a, size_t b) {
     return observations[a].features.area > observations[b].features.area;
   });
   std::vector<vpLampChart> charts;
-  for (const size_t i : doubtful) {
+  for (const size_t i : unidentified) {
     if (charts.size() == mostCharts) {
       break;
     }

@@ -57,8 +57,8 @@ vpReportTable vpTrackErrorTable(const std::vector<vpNamedServoLog> &runs)
     if (const std::vector<vpTrackError> errors = log.trueErrors(); !errors.empty()) {
       table.rows.push_back(rowOf(name + ", true", errors));
     }
-    if (const std::vector<vpTrackError> errors = log.believedErrors(); !errors.empty()) {
-      table.rows.push_back(rowOf(name + ", as it believed", errors));
+    if (const std::vector<vpTrackError> errors = log.estimatedErrors(); !errors.empty()) {
+      table.rows.push_back(rowOf(name + ", as estimated", errors));
     }
   }
   table.note = "Across the path, while the reference moves; headings without turns on the spot.";
@@ -77,7 +77,7 @@ vpFigure vpServoTracksFigure(const std::string &name, const vpPath &path,
   std::string caption;
   for (const auto &[run, log] : runs) {
     tracks.push_back({run, trackOf(log)});
-    caption += (caption.empty() ? "" : ", ") + run + (log.truth.empty() ? " (as it believed)" : "");
+    caption += (caption.empty() ? "" : ", ") + run + (log.truth.empty() ? " (as estimated)" : "");
   }
   return vpTracksFigure(name, "The path and the tracks on it: " + caption + ".", wanted, tracks);
 }

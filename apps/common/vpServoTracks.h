@@ -18,11 +18,11 @@ BEGIN_VISP_NAMESPACE
 //! A run of vlp-servo and what it is called.
 using vpNamedServoLog = std::pair<std::string, vpServoLog>;
 
-//! How far off their paths runs were: truly, where the truth is known, and as their loops believed.
+//! How far off their paths runs were: truly, where the truth is known, and as their loops estimated.
 vpReportTable vpTrackErrorTable(const std::vector<vpNamedServoLog> &runs);
 
-//! The map of a path and the tracks of runs on it: the true ones, where they are known, else those believed
-//! in.
+//! The map of a path and the tracks of runs on it: the true ones, where they are known, else the
+//! estimated ones.
 vpFigure vpServoTracksFigure(const std::string &name, const vpPath &path,
                              const std::vector<vpNamedServoLog> &runs);
 

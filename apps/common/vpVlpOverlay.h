@@ -16,7 +16,7 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  A picture by which a person checks at a glance what was made of a frame: the frame in grey, brightened;
+  A picture by which a person checks quickly what was made of a frame: the frame in grey, brightened;
   blue, the windows in which lamps were looked for, if not in all of it; each lamp-like region's outline in
   green where it counts for the position, yellow where its lamp is known and does not count, orange where it
   is no lamp of the map; a cross at the lamp's image point; beside it id, confidence, frequency and duty with

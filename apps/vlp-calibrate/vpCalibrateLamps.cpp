@@ -149,7 +149,7 @@ vpExitCode vpCalibrateLamps(int argc, char **argv)
   text += vpFormat("\n%zu image points, %.4f px rms, %.2f times as uncertain as the detector said\n",
                    found.bundle.residuals.size(), found.bundle.rms, found.bundle.imageFactor);
   std::cout << text;
-  vpWarnOfDoubt(found.bundle, map);
+  vpWarnOfInflatedMap(found.bundle, map);
   for (size_t k = 0; k < found.lamps.size(); ++k) {
     if (found.lamps[k].state == State::displaced) {
       spdlog::warn("lamp {} is {:.0f} mm from where the map has it", vpOneLine(map.lamps[k].id),

@@ -70,7 +70,7 @@ vpExitCode vpCalibrateMount(int argc, char **argv)
     text += "told apart by the prior alone: " + names + "\n";
   }
   std::cout << text;
-  vpWarnOfDoubt(found, map);
+  vpWarnOfInflatedMap(found, map);
   if (!options.out.empty()) {
     const vpCalibrationFolder folder(options.out);
     vpWritePicture(folder / "residuals.png",

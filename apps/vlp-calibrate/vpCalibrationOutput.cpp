@@ -60,7 +60,7 @@ cv::Mat vpResidualPicture(cv::Size size, const std::vector<vpDrawnResidual> &res
     used += drawn.used ? 1 : 0;
   }
   const double rms = used > 0 ? std::sqrt(squares / static_cast<double>(2 * used)) : 0;
-  static const double length = 20; // px of 800, of the usual residual
+  static const double length = 20; // px of 800, of the RMS residual
   const double times = rounded(length / std::max(rms, 1e-4));
   const auto at = [&](const Eigen::Vector2d &point) {
     static const int shift = 4; // fixed point
@@ -118,21 +118,21 @@ vpReportTable vpRigTable(const vpBundleResult &result, const vpRigVector &priors
   return table;
 }
 
-void vpWarnOfDoubt(const vpBundleResult &result, const vpLampMap &map)
+void vpWarnOfInflatedMap(const vpBundleResult &result, const vpLampMap &map)
 {
-  if (result.doubted.empty()) {
+  if (result.inflatedLamps.empty()) {
     return;
   }
   const auto offset = [&](size_t lamp) {
     return (result.map.lamps[lamp].position - map.lamps[lamp].position).norm();
   };
-  const size_t farthest = *std::max_element(result.doubted.begin(), result.doubted.end(),
+  const size_t farthest = *std::max_element(result.inflatedLamps.begin(), result.inflatedLamps.end(),
                                             [&](size_t a, size_t b) { return offset(a) < offset(b); });
   spdlog::warn(
       "lamps that hang exactly where position_m has them do not explain the pictures: each was taken "
       "for {:.1f} mm uncertain; {} is farthest off, by {:.1f} mm. Measure again, or give a "
       "position_sigma_m",
-      1000 * result.mapDoubt, vpOneLine(map.lamps[farthest].id), 1000 * offset(farthest));
+      1000 * result.inflatedLampSigma, vpOneLine(map.lamps[farthest].id), 1000 * offset(farthest));
 }
 
 std::string vpCovarianceCsv(const vpBundleResult &result)

@@ -23,8 +23,8 @@ struct vpDrawnResidual {
 };
 
 /*!
-  All residuals over the picture, as lines from each point, so much longer than they are that the usual one is
-  seen; how much is written there. \param size px, of the picture.
+  All residuals over the picture, as lines from each point, enlarged so that a typical one is visible; the
+  factor is written there. \param size px, of the picture.
 */
 cv::Mat vpResidualPicture(cv::Size size, const std::vector<vpDrawnResidual> &residuals,
                           const std::string &title);
@@ -36,7 +36,7 @@ std::vector<vpDrawnResidual> vpResidualsOf(const vpBundleResult &result);
 vpReportTable vpRigTable(const vpBundleResult &result, const vpRigVector &priors);
 
 //! Warns where lamps that were to be held do not explain the pictures, and names the one farthest off.
-void vpWarnOfDoubt(const vpBundleResult &result, const vpLampMap &map);
+void vpWarnOfInflatedMap(const vpBundleResult &result, const vpLampMap &map);
 
 //! Covariance of the rig parameters as CSV, m, rad, px and share.
 std::string vpCovarianceCsv(const vpBundleResult &result);

@@ -34,7 +34,7 @@ Inputs:
   truth, estimate  TUM: timestamp tx ty tz qx qy qz qw (s, m), times increasing, # begins a comment
   fixes            as vlp-locate --fixes writes them; rows whose state is none or ambiguous are no position
   runs             log folders of vlp-servo: how far each was off its path, truly where it is simulated, and
-                   as it believed; runs along the same path are drawn in one map
+                   as estimated; runs along the same path are drawn in one map
 Each pose is held against the truth interpolated to its time, never beyond the truth's ends.
 Errors are estimate minus truth. A percentile is linear between the two sorted values around it; 90 %, 95 %
 and max are of magnitudes. The dispersion is that of the horizontal errors: for a robot that stands still

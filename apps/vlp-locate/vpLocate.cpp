@@ -189,9 +189,9 @@ private:
           vpOneLine(m_options.rigFile), vpFormat("%.2g", m_rig.shutter.exposure),
           vpFormat("%.2g", exposure.exposure()));
     }
-    const bool mapDoubted = std::any_of(m_map.lamps.begin(), m_map.lamps.end(),
-                                        [](const vpLamp &lamp) { return lamp.positionSigma > 0; });
-    if (m_summary.positions() > 0 && !mapDoubted && m_rig.rotationSigma.isZero(0) &&
+    const bool mapStatesSigma = std::any_of(m_map.lamps.begin(), m_map.lamps.end(),
+                                            [](const vpLamp &lamp) { return lamp.positionSigma > 0; });
+    if (m_summary.positions() > 0 && !mapStatesSigma && m_rig.rotationSigma.isZero(0) &&
         m_rig.translationSigma.isZero(0)) {
       spdlog::info(
           "{} and {} state no position_sigma_m, rotation_sigma_deg or translation_sigma_m: positions "

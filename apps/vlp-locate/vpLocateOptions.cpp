@@ -117,7 +117,7 @@ bool vpLocateOptions::parse(int argc, char **argv)
                "each frame by itself; so it is with --image, whose pictures need be no sequence, and with "
                "--solver two");
   vpAddName(app, "--poses", poses, "FILE", "write the poses as a TUM trajectory");
-  vpAddName(app, "--fixes", fixes, "FILE", "write the poses with their doubt as CSV");
+  vpAddName(app, "--fixes", fixes, "FILE", "write the poses with their standard deviations as CSV");
   vpAddName(app, "--seen", seen, "FILE", "write what was seen in each frame as CSV");
   vpAddName(app, "--overlay", overlay, "DIR",
             "write a picture of each frame with what was seen, and the map; of lamps that blink and have no "

@@ -35,7 +35,7 @@ public:
     m_plot.setLegend(0, 0, "v, m/s");
     m_plot.setLegend(0, 1, "w, rad/s");
     m_plot.initGraph(1, 2);
-    m_plot.setTitle(1, "Error of the pose that the loop believes in");
+    m_plot.setTitle(1, "Error of the estimated pose");
     m_plot.setLegend(1, 0, "across, cm");
     m_plot.setLegend(1, 1, "heading, deg");
   }

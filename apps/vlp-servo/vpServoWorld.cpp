@@ -22,7 +22,7 @@ vpScenario scenarioOf(const vpVlpServoOptions &options)
   return scenario;
 }
 
-//! What the robot believes: the files of the command line, else what the scenario says it does.
+//! The robot's rig: the file of the command line, else the scenario's.
 vpVlpRig rigOf(const vpVlpServoOptions &options, const vpScenario &scenario)
 {
   return options.rigFile.empty() ? scenario.rig : vpVlpRig::load(options.rigFile);

@@ -47,7 +47,7 @@ vpTrajectory truthOf(vpSimulation &simulation, const std::vector<double> &frameT
   return truth;
 }
 
-void writeBeliefs(const vpSimulation &simulation, const vpNewFolder &folder)
+void writeRobotFiles(const vpSimulation &simulation, const vpNewFolder &folder)
 {
   vpVlpRig rig = simulation.rig();
   rig.cameraFile = "camera.xml"; // beside the rig, wherever the scenario's was
@@ -92,7 +92,7 @@ vpExitCode vpSimulate(const vpSimulateOptions &options)
     spdlog::warn("stopped before the first frame; nothing is written");
     return vpExitCode::badInput;
   }
-  writeBeliefs(simulation, folder);
+  writeRobotFiles(simulation, folder);
   truthOf(simulation, times).save(folder.file("truth.tum"));
   if (const std::vector<vpOdometry> odometry = simulation.odometry(); !odometry.empty()) {
     vpWriteOdometry(folder.file("odometry.csv"), odometry);

@@ -25,7 +25,7 @@ Examples:
 
 The run folder (m, s, rad):
   frames.csv     timestamp_s,file: start of exposure of the first line of each picture
-  rig.yaml, camera XML, lamps.yaml   what the robot believes, which need not be true
+  rig.yaml, camera XML, lamps.yaml   the robot's files, which may differ from the simulated truth
   truth.tum      where the robot base was, wMb; at each frame, and of a driven robot 50 times a second
   odometry.csv   timestamp_s,v_m_s,w_rad_s: what a driven robot's wheels say
 The same scenario and seed give the same bytes. data/README.md explains the scenario file.

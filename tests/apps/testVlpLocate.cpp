@@ -270,7 +270,7 @@ TEST(VlpLocate, LampThatTheMapDoesNotKnowIsSeenAndDoesNotCount)
   EXPECT_EQ(unknown, 1);
 }
 
-TEST(VlpLocate, SaysWhereNothingStatesADoubt)
+TEST(VlpLocate, SaysWhereNothingStatesASigma)
 {
   const vpTemporaryFolder folder;
   const auto rig = vpLocateScene::writeRig(folder);

@@ -61,7 +61,7 @@ TEST(VlpServo, DrivesAndKeepsALog)
   vpProcess program("vlp-servo", with(briefDrive(folder), {"--log", folder / "deep/run", "--seed", "3"}));
   EXPECT_EQ(program.wait(), 0) << program.err();
   for (const std::string word :
-       {"RMS, mm", "true", "as it believed", "poses per second", "picture to command"}) {
+       {"RMS, mm", "true", "as estimated", "poses per second", "picture to command"}) {
     EXPECT_NE(program.out().find(word), std::string::npos) << word << program.out();
   }
   const vpServoLog log = vpServoLog::load(folder / "deep/run");
@@ -94,7 +94,7 @@ TEST(VlpServo, ComparisonsCloseNoLoopOverLamps)
   vpProcess evaluate("vlp-evaluate",
                      {"--runs", folder / "run0", folder / "run2", "--out", folder / "report"});
   EXPECT_EQ(evaluate.wait(), 0) << evaluate.err();
-  for (const std::string word : {"run0, true", "run0, as it believed", "run2, true"}) {
+  for (const std::string word : {"run0, true", "run0, as estimated", "run2, true"}) {
     EXPECT_NE(evaluate.out().find(word), std::string::npos) << evaluate.out();
   }
   EXPECT_TRUE(fs::exists(folder / "report/report.html"));

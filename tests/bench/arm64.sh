@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What a frame, from frame to pose, would cost on one core of a Raspberry Pi 3 (Cortex-A53, 1.2 GHz): qemu-user counts which
 # blocks of code run how often (arm64/countBlocks.cpp), LLVM's models of that core and of the next one (Cortex-A55) say how
-# long each takes, and what caches and branch prediction miss is added. BENCHMARK.md says what to think of it.
+# long each takes, and what caches and branch prediction miss is added. tests/bench/robot-computer.md says how far to rely on it.
 #   cmake --build --preset arm64 --target bench-instructions
 #   bash tests/bench/arm64.sh PROGRAM SYSROOT [FRAMES]   PROGRAM: bench_instructions for arm64; default 4 frames each
 set -euo pipefail

@@ -230,7 +230,7 @@ std::vector<vpTimedVelocity> laps()
   return commands;
 }
 
-//! Two lamps given, six surveyed: the map is believed of none of these.
+//! Two lamps given, six surveyed: of these the map is no prior.
 void survey(int seeds, bool slips)
 {
   // A calibrated rig: what vlp-calibrate mount leaves.
@@ -283,9 +283,9 @@ void survey(int seeds, bool slips)
 }
 
 /*!
-  The realistic rigs of BENCHMARK.md: lean, principal point, focal length and lamps' places drawn; mount and
-  lamps calibrated with what such a rig states, two lamps measured by hand to 0.5 mm. Under lamps of one
-  height, as the paper's.
+  The typical rigs of tests/bench/calibration.md: lean, principal point, focal length and lamps' places drawn;
+  mount and lamps calibrated with what such a rig states, two lamps measured by hand to 0.5 mm. Under lamps of
+  one height, as the paper's.
 */
 void rigs(int seeds)
 {
@@ -340,7 +340,7 @@ void rigs(int seeds)
     }
   });
   std::printf(
-      "\n| %d realistic rigs, median | mean error, mm | dispersion radius on one spot, mm |\n|---|---|---|\n",
+      "\n| %d typical rigs, median | mean error, mm | dispersion radius on one spot, mm |\n|---|---|---|\n",
       seeds);
   const auto row = [&](const char *name, Located Result::*stage) {
     std::vector<double> errors, radii;

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // Which ids the detector reads off luminaires of many emission patterns, drawn and taken off real pictures,
-// and how far off their middles are: the table of BENCHMARK.md.
+// and how far off their middles are: the table of tests/bench/luminaires.md.
 //
 // bench_luminaires [LAMPS of each family] [FAMILY|all|drawn|real] [SEED] [linear|phone] [FOLDER]
 // (540 all 1 linear). Real families need VLP_INPUT_IMAGE_PATH. A phone's pictures have a tone curve of 2.2

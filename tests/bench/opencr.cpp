@@ -53,8 +53,8 @@ struct BusResult {
   std::uint64_t transactions = 0, spoilt = 0, unseen = 0, seenByHost = 0, seenByBoard = 0, unanswered = 0;
   std::uint64_t repeated = 0, told = 0;
   std::uint64_t wrongReadings = 0; // used, though the board never sent that
-  std::uint64_t falseWrites = 0;   // confirmed without doubt, though the board did not carry it out
-  std::uint64_t doubtful = 0;      // confirmed with doubt
+  std::uint64_t falseWrites = 0;   // confirmed for certain, though the board did not carry it out
+  std::uint64_t stale = 0;         // confirmed by an answer that may be stale
   std::vector<double> times;       // s, of those that succeeded
 };
 
@@ -93,9 +93,9 @@ void liveOnBus(double corrupted, bool others, std::uint64_t seed, size_t transac
         bus.write(Table::id, address, bytes, begin + deadline);
         bytes.insert(bytes.begin(), {static_cast<std::uint8_t>(address), 0});
         wasDone = carriedOut(emulated.board.requests(), before, bytes, {});
-        result.falseWrites += !wasDone && !bus.doubtful();
+        result.falseWrites += !wasDone && !bus.answerMayBeStale();
       }
-      result.doubtful += bus.doubtful();
+      result.stale += bus.answerMayBeStale();
       result.times.push_back(bus.now() - begin);
     } catch (const vpException &) {
       confirmed = false;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The paper's section 3, number by number: simulates its experiments under an ideal and under typical rigs, locates, evaluates,
-# and prints the table of BENCHMARK.md. Takes about half an hour on two cores; needs 3 GB for a while.
+# and prints the table of tests/bench/paper.md. Takes about half an hour on two cores; needs 3 GB for a while.
 #   bash tests/bench/paper.sh [FOLDER]   default build/benchmark; what is done there already is not done again
 # RIGS=50: number of typical rigs.
 set -euo pipefail

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // Few identifiers over many lamps: how often a picture alone says where the robot is, and how long that
-// takes; and how often geometry tells a reflection from its lamp. Prints two tables for BENCHMARK.md.
+// takes; and how often geometry tells a reflection from its lamp. Prints two tables for tests/bench/reuse.md.
 
 #include <algorithm>
 #include <cstdlib>

@@ -38,7 +38,7 @@ struct Drive {
 
 //! Of one drive.
 struct Result {
-  double seen = NAN;               // m, RMS across the path of the poses that the loop believed in
+  double seen = NAN;               // m, RMS across the path of the poses that the loop estimated
   double truth = NAN, worst = NAN; // m, likewise of the base, and its largest
   double rig = NAN;                // m, RMS of the difference of both
   double lastLap = NAN;            // m, RMS of the base in the last lap
@@ -114,13 +114,13 @@ Result drive(const Drive &asked, std::uint64_t seed)
   }
   const auto truth = vpTrackErrorsOf(asked.path, run, [&](double time) { return simulation.wMb(time); });
   const auto seen = vpTrackErrorsOf(asked.path, run);
-  std::vector<double> across, believed, apart, last;
+  std::vector<double> across, estimated, apart, last;
   result.worst = result.within = 0;
   for (size_t i = 0; i < truth.size(); ++i) {
     across.push_back(truth[i].across);
     result.worst = std::max(result.worst, std::abs(truth[i].across));
     if (i < seen.size()) {
-      believed.push_back(seen[i].across);
+      estimated.push_back(seen[i].across);
       apart.push_back(truth[i].across - seen[i].across);
     }
     if (truth[i].s > (asked.laps - 1) * asked.path.length()) {
@@ -132,7 +132,7 @@ Result drive(const Drive &asked, std::uint64_t seed)
     }
   }
   result.truth = rms(across);
-  result.seen = rms(believed);
+  result.seen = rms(estimated);
   result.rig = rms(apart);
   result.lastLap = rms(last);
   return result;
@@ -190,7 +190,7 @@ void lines(double speed, int seeds)
                              std::to_string(std::lround(1000 * speed)) + " mm/s, ";
     row(name + "lamps, ideal rig", asked, seeds);
     asked.typical = true;
-    row(name + "lamps, realistic rigs", asked, seeds);
+    row(name + "lamps, typical rigs", asked, seeds);
     asked.typical = false;
     asked.pose = Pose::rawOdometry;
     row(name + "wheels alone, raw", asked, seeds);
@@ -226,7 +226,7 @@ void shapes(int seeds)
     row(std::string(name) + ", 10 laps, lamps, ideal rig", asked, std::max(2, seeds / 5));
     asked.laps = 1;
     asked.typical = true;
-    row(std::string(name) + ", lamps, realistic rigs", asked, seeds);
+    row(std::string(name) + ", lamps, typical rigs", asked, seeds);
     asked.typical = false;
     asked.laps = 10;
     asked.pose = Pose::rawOdometry;

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-//! Tables of BENCHMARK.md that hold errors against the standard deviations stated with them.
+//! Tables of tests/bench/calibration.md that compare errors with the standard deviations stated with them.
 namespace vpErrorTable
 {
 inline double median(std::vector<double> values)

@@ -30,7 +30,7 @@ TEST_F(DynamixelBus, PingsReadsAndWrites)
   bus.write(200, 19, {7}, soon());
   EXPECT_EQ(heartbeat(), 7);
   EXPECT_EQ(bus.read(200, 10, 172, soon()).size(), 172u);
-  EXPECT_FALSE(bus.doubtful());
+  EXPECT_FALSE(bus.answerMayBeStale());
   const vpDynamixelStatistics statistics = bus.statistics();
   EXPECT_EQ(statistics.transactions, 5u);
   EXPECT_EQ(statistics.attempts, 5u);
@@ -74,21 +74,21 @@ TEST_F(DynamixelBus, ARequestThatTheDeviceSawCorruptedIsRepeatedAtOnce)
 }
 
 //! The protocol numbers no answer: what comes late must not pass for the answer to a later request.
-TEST_F(DynamixelBus, LateAnswersLeaveDoubt)
+TEST_F(DynamixelBus, LateAnswersMayBeStale)
 {
   vpFaultyLine::Faults late;
   late.delayed = 1;
   late.delay = 0.05;
   emulated.line->setFaults(late);
   bus.write(200, 19, {1}, soon()); // its second attempt takes the answer to its first
-  EXPECT_TRUE(bus.doubtful());
+  EXPECT_TRUE(bus.answerMayBeStale());
   EXPECT_EQ(bus.statistics().timeouts, 1u);
   emulated.line->setFaults({});
   EXPECT_EQ(bus.read(200, 19, 1, soon()).size(), 1u); // an answer of another length is passed over
   EXPECT_GE(bus.statistics().foreign, 1u);
   const double begin = bus.now();
   bus.settle();
-  EXPECT_FALSE(bus.doubtful());
+  EXPECT_FALSE(bus.answerMayBeStale());
   EXPECT_LE(bus.now(), begin + bus.lateAnswerTime);
 }
 
@@ -123,7 +123,7 @@ TEST_F(DynamixelBus, GivesRightAnswersOnABadLineOrNone)
         for (const vpOpenCrEmulator::Request &request : emulated.board.requests()) {
           sent |= request.answer == got;
         }
-        right += sent || bus.doubtful(); // then it may be an answer from before
+        right += sent || bus.answerMayBeStale(); // then it may be an answer from before
       } catch (const vpException &) {
         ++failed;
       }

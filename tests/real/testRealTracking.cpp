@@ -23,7 +23,7 @@ struct Seen {
   std::set<unsigned int> tracks; // numbers that it had
   int frames = 0;                // in which it was seen
   double step = 0;               // px, the largest of point from frame to frame
-  double unrest = 0;             // px, likewise of place
+  double wander = 0;             // px, likewise of place
   double chipsConfidence = 1;    // of a single frame, the least
 };
 
@@ -100,7 +100,7 @@ std::vector<Seen> play(RealSet &set, const Video &video)
       EXPECT_TRUE(vpModulation::sameWord(seen.features.chips, lamp->chips)) << "frame " << k;
       lamp->tracks.insert(seen.track);
       lamp->step = std::max(lamp->step, (seen.point - lamp->point).norm());
-      lamp->unrest = std::max(lamp->unrest, (place - lamp->place).norm());
+      lamp->wander = std::max(lamp->wander, (place - lamp->place).norm());
       lamp->chipsConfidence = std::min(lamp->chipsConfidence, alone->features.chipsConfidence);
       lamp->place = place;
       lamp->point = seen.point;
@@ -125,7 +125,7 @@ void expectSteady(RealSet &set, const Video &video, size_t missed = 0)
     }
     std::cout << ", chips " << lamp.chips << " (confidence in a frame at least " << lamp.chipsConfidence
               << "), moved by up to " << lamp.step << " px from frame to frame, in the whole picture by "
-              << lamp.unrest << "\n";
+              << lamp.wander << "\n";
     EXPECT_GE(static_cast<size_t>(lamp.frames) + missed, frames);
     EXPECT_EQ(lamp.tracks.size(), 1u);
     EXPECT_GT(*lamp.tracks.begin(), 0u) << "not followed";

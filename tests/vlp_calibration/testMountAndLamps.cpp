@@ -37,7 +37,7 @@ World worldOf(const vpRigVector &step, double rise = 0.2, std::uint64_t seed = 1
   return world;
 }
 
-vpRigVector usualStep()
+vpRigVector typicalStep()
 {
   vpRigVector step;
   step << 0.012, -0.007, 0.006, 0.2 * degree, -0.13 * degree, 1.5 * degree, 2.5, -1.8, 0.004;
@@ -56,29 +56,29 @@ void expectNear(const vpBundleResult &found, const vpRigVector &truth)
 
 TEST(MountCalibration, SpinAndSquareTellAllNineParameters)
 {
-  const World world = worldOf(usualStep());
+  const World world = worldOf(typicalStep());
   const vpBundleResult found =
       vpMountCalibration().solve({drive(world, spin() + square(), 3)}, rig(), world.map);
-  expectNear(found, usualStep());
+  expectNear(found, typicalStep());
   EXPECT_TRUE(found.unseparated.empty());
   for (int i = 0; i < vpRigParameterCount; ++i) {
-    EXPECT_LT(std::abs(found.step(i) - usualStep()(i)), 6 * std::sqrt(found.rigCovariance(i, i))) << i;
+    EXPECT_LT(std::abs(found.step(i) - typicalStep()(i)), 6 * std::sqrt(found.rigCovariance(i, i))) << i;
   }
   EXPECT_NEAR(vpRigStep(rig(), found.rig)(at(vpRigParameter::u0)), found.step(at(vpRigParameter::u0)), 1e-9);
 }
 
 TEST(MountCalibration, SpinAndSquareMayBeTwoRuns)
 {
-  World world = worldOf(usualStep());
+  World world = worldOf(typicalStep());
   const vpLampRun turning = drive(world, spin(), 4);
   world.robot.seed = 8;
   const vpLampRun driving = drive(world, square(), 5);
-  expectNear(vpMountCalibration().solve({turning, driving}, rig(), world.map), usualStep());
+  expectNear(vpMountCalibration().solve({turning, driving}, rig(), world.map), typicalStep());
 }
 
 TEST(MountCalibration, KnownPlacesDoAsWell)
 {
-  World world = worldOf(usualStep());
+  World world = worldOf(typicalStep());
   const std::vector<vpTimedVelocity> commands = {{{0.02, 0.06}, 60}};
   vpLampRun run = drive(world, commands, 6);
   run.places = truth(world, commands);
@@ -92,7 +92,7 @@ TEST(MountCalibration, KnownPlacesDoAsWell)
       image.point = pixel;
     }
   }
-  expectNear(vpMountCalibration().solve({still}, rig(), world.map), usualStep());
+  expectNear(vpMountCalibration().solve({still}, rig(), world.map), typicalStep());
 }
 
 TEST(MountCalibration, AMountThatIsTurnedByARightAngleIsFound)
@@ -109,7 +109,7 @@ TEST(MountCalibration, AMountThatIsTurnedByARightAngleIsFound)
 //! One tick of a wheel turns the base by 0.018 degree, which moves a lamp near the border by 0.1 px.
 TEST(MountCalibration, TicksOfTheWheelsDoNotPassForNoiseOfTheImages)
 {
-  World world = worldOf(usualStep());
+  World world = worldOf(typicalStep());
   world.robot.slipSigma = 0;
   const vpBundleResult found =
       vpMountCalibration().solve({drive(world, square() + square(), 3)}, rig(), world.map);
@@ -141,7 +141,7 @@ vpLampOutline outlineOf(const vpVlpRig &rig, const vpHomogeneousMatrix &wMb, con
 //! Where a lamp's middle lies in its ellipse depends on the lean that is looked for.
 TEST(MountCalibration, LeanIsNotTakenForThePrincipalPointByTheMiddlesOfDiscs)
 {
-  vpRigVector step = usualStep();
+  vpRigVector step = typicalStep();
   step(at(vpRigParameter::roll)) = 1 * degree;
   World world = worldOf(step);
   world.noise = world.stated = 0.001;
@@ -165,7 +165,7 @@ TEST(MountCalibration, LeanIsNotTakenForThePrincipalPointByTheMiddlesOfDiscs)
 
 TEST(MountCalibration, LampsOfOneHeightLeaveThePrincipalPointOpen)
 {
-  const World world = worldOf(usualStep(), 0);
+  const World world = worldOf(typicalStep(), 0);
   const std::vector<vpLampRun> runs = {drive(world, spin() + square(), 3)};
   vpMountCalibration calibration;
   const vpBundleResult refused = calibration.solve(runs, rig(), world.map);
@@ -175,13 +175,13 @@ TEST(MountCalibration, LampsOfOneHeightLeaveThePrincipalPointOpen)
   }
   const vpVlpRig lens = [&] { // known from a board
     vpRigVector step = vpRigVector::Zero();
-    step.tail<3>() = usualStep().tail<3>();
+    step.tail<3>() = typicalStep().tail<3>();
     return vpMovedRig(rig(), step);
   }();
   for (const vpRigParameter held : {vpRigParameter::u0, vpRigParameter::v0, vpRigParameter::focal}) {
     calibration.bundle.rigSigma(at(held)) = 0;
   }
-  vpRigVector rest = usualStep();
+  vpRigVector rest = typicalStep();
   rest.tail<3>().setZero();
   expectNear(calibration.solve(runs, lens, world.map), rest);
 }
@@ -196,7 +196,7 @@ TEST(MountCalibration, RefusesARobotThatStandsStill)
 
 TEST(MountCalibration, RefusesTooFewPicturesAndSwappedLamps)
 {
-  const World world = worldOf(usualStep());
+  const World world = worldOf(typicalStep());
   vpLampRun run = drive(world, spin() + square(), 3);
   vpLampMap swapped = world.map;
   std::swap(swapped.lamps[1].position, swapped.lamps[2].position);
@@ -211,11 +211,11 @@ TEST(MountCalibration, RefusesTooFewPicturesAndSwappedLamps)
 
 //! One lamp hangs 5 mm elsewhere than a map that claims to be exact: what is found of the rig is as
 //! uncertain.
-TEST(MountCalibration, MapThatDoesNotExplainThePicturesIsDoubted)
+TEST(MountCalibration, MapThatDoesNotExplainThePicturesIsInflated)
 {
-  const World world = worldOf(usualStep());
+  const World world = worldOf(typicalStep());
   const vpLampRun run = drive(world, spin() + square(), 3);
-  EXPECT_EQ(vpMountCalibration().solve({run}, rig(), world.map).mapDoubt, 0);
+  EXPECT_EQ(vpMountCalibration().solve({run}, rig(), world.map).inflatedLampSigma, 0);
   for (const Eigen::Vector3d &off : {Eigen::Vector3d(0.005, 0, 0), Eigen::Vector3d(0, 0, 0.005)}) {
     vpLampMap claimed = world.map;
     claimed.lamps[1].position += off;
@@ -223,9 +223,9 @@ TEST(MountCalibration, MapThatDoesNotExplainThePicturesIsDoubted)
     calibration.bundle.rigSigma(at(vpRigParameter::focal)) = 0.01; // told apart from z by heights alone
     const vpBundleResult found = calibration.solve({run}, rig(), claimed);
     ASSERT_TRUE(found.valid) << found.refusal;
-    EXPECT_GT(found.mapDoubt, 0.0005);
-    EXPECT_LT(found.mapDoubt, 0.01);
-    const vpRigVector error = found.step - usualStep();
+    EXPECT_GT(found.inflatedLampSigma, 0.0005);
+    EXPECT_LT(found.inflatedLampSigma, 0.01);
+    const vpRigVector error = found.step - typicalStep();
     for (int i = 0; i < vpRigParameterCount; ++i) {
       EXPECT_LT(std::abs(error(i)), 4 * std::sqrt(found.rigCovariance(i, i))) << i << ", " << off.transpose();
     }
@@ -234,7 +234,7 @@ TEST(MountCalibration, MapThatDoesNotExplainThePicturesIsDoubted)
 
 TEST(MountCalibration, RefusesOdometryOfAnotherClockUnitOrSign)
 {
-  const World world = worldOf(usualStep());
+  const World world = worldOf(typicalStep());
   const vpLampRun run = drive(world, square(), 3);
   const auto refusalOf = [&](const std::function<void(vpOdometry &)> &change) {
     vpLampRun changed = run;
@@ -256,7 +256,7 @@ TEST(MountCalibration, RefusesOdometryOfAnotherClockUnitOrSign)
 
 TEST(MountCalibration, AGapInTheOdometryTellsNothing)
 {
-  const World world = worldOf(usualStep());
+  const World world = worldOf(typicalStep());
   vpLampRun run = drive(world, spin() + square(), 3);
   const double from = run.odometry.front().timestamp + 5, until = from + 4;
   run.odometry.erase(std::remove_if(run.odometry.begin(), run.odometry.end(),
@@ -265,16 +265,16 @@ TEST(MountCalibration, AGapInTheOdometryTellsNothing)
                                     }),
                      run.odometry.end());
   const vpBundleResult found = vpMountCalibration().solve({run}, rig(), world.map);
-  expectNear(found, usualStep());
+  expectNear(found, typicalStep());
   for (int i = 0; i < vpRigParameterCount; ++i) {
-    EXPECT_LT(std::abs(found.step(i) - usualStep()(i)), 5 * std::sqrt(found.rigCovariance(i, i))) << i;
+    EXPECT_LT(std::abs(found.step(i) - typicalStep()(i)), 5 * std::sqrt(found.rigCovariance(i, i))) << i;
   }
 }
 
 //! Reflections that carry a lamp's own stripes: one image in fifty, up to 60 px off.
 TEST(MountCalibration, OutliersAreLeftOut)
 {
-  const World world = worldOf(usualStep());
+  const World world = worldOf(typicalStep());
   vpLampRun run = drive(world, spin() + square(), 3);
   size_t made = 0, count = 0;
   for (vpLampView &view : run.views) {
@@ -286,7 +286,7 @@ TEST(MountCalibration, OutliersAreLeftOut)
     }
   }
   const vpBundleResult found = vpMountCalibration().solve({run}, rig(), world.map);
-  expectNear(found, usualStep());
+  expectNear(found, typicalStep());
   size_t out = 0;
   for (const vpBundleResidual &residual : found.residuals) {
     out += residual.used ? 0 : 1;
@@ -301,13 +301,13 @@ TEST(MountCalibration, StandardDeviationsAreHonestSlow)
   const int seeds = 12;
   double sum = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    World world = worldOf(usualStep(), 0.2, static_cast<std::uint64_t>(seed));
+    World world = worldOf(typicalStep(), 0.2, static_cast<std::uint64_t>(seed));
     world.robot.slipSigma = 0;
     vpMountCalibration calibration;
     const vpBundleResult found =
         calibration.solve({drive(world, spin() + square(), 100 + seed)}, rig(), world.map);
     ASSERT_TRUE(found.valid) << found.refusal;
-    const vpRigVector error = found.step - usualStep();
+    const vpRigVector error = found.step - typicalStep();
     sum += error.dot(found.rigCovariance.inverse() * error);
   }
   // Chi-square of 9 x 12 degrees: 99.9 % lie between 0.62 and 1.49 of its mean. Below, it was too careful by
@@ -386,7 +386,7 @@ TEST(LampSurvey, ALampThatNobodySawKeepsItsPlace)
 
 TEST(RigParameters, AStepIsTakenBack)
 {
-  const vpRigVector step = usualStep();
+  const vpRigVector step = typicalStep();
   EXPECT_LT((vpRigStep(rig(), vpMovedRig(rig(), step)) - step).cwiseAbs().maxCoeff(), 1e-9);
 }
 } // namespace

@@ -106,7 +106,7 @@ TEST(ShutterCalibration, SaysWhereThereAreNoStripes)
   EXPECT_NE(found.refusal.find("no stripes"), std::string::npos) << found.refusal;
 }
 
-//! From two frames of a world, with what is believed of it.
+//! From two frames of a world, with what the rig states of it.
 vpShutterEstimate fromTwoFrames(vpSimulation &world, const vpVlpRig &rig, const vpLampMap &map)
 {
   vpShutterCalibration calibration(rig, map);

@@ -49,7 +49,8 @@ TEST(LedIdConfusion, FindsThePairsThatAreNear)
   EXPECT_EQ(pairs[0].first, 0u);
   EXPECT_EQ(pairs[0].second, 1u);
   const double sigma =
-      planner.prediction.doubt(pwm(2000, 0.5), planner.prediction.lines(diameter, height), crystal).frequency;
+      planner.prediction.uncertainty(pwm(2000, 0.5), planner.prediction.lines(diameter, height), crystal)
+          .frequency;
   EXPECT_NEAR(pairs[0].distance, 2 / sigma, 0.01);
   EXPECT_NEAR(pairs[0].error, 0.5 * std::erfc(1 / sigma / std::sqrt(2)), 0.005);
   EXPECT_EQ(pairs.back().chips, 4); // 10 and 01 in manchester

@@ -147,7 +147,7 @@ TEST(LedIdPlanner, IdentifiersAreAsFarApartAsStated)
   }
 }
 
-//! Where doubt peaks between the frequencies at which it is looked at: 250 lines of this rig.
+//! Where sigma peaks between the frequencies at which it is looked at: 250 lines of this rig.
 TEST(LedIdPlanner, WhatIsNotToldApartIsLeftOut)
 {
   const vpLedIdPlanner planner(rigOf(resized));
@@ -187,15 +187,15 @@ TEST(LedIdPlannerStatistics, RecogniserErrsNoMoreThanStated)
   for (int trial = 0; trial < trials; ++trial) {
     const vpLamp &lamp = map.lamps[generator() % map.lamps.size()];
     const double f = lamp.modulation.frequency;
-    const vpStripeDoubt doubt = planner.prediction.together(
+    const vpStripeUncertainty sigma = planner.prediction.together(
         lamp.modulation, 57, crystal, planner.prediction.shapeSigma(lamp.modulation, 57));
     const double others = std::hypot(f * rig.shutter.rowTimeSigma / rig.shutter.rowTime, 1e-6 * crystal * f);
     vpLampObservation seen;
     seen.features.signal = vpStripeFeatures::Signal::pwm;
-    seen.features.frequency = f + doubt.frequency * normal(generator);
-    seen.features.frequencySigma = std::sqrt(doubt.frequency * doubt.frequency - others * others);
-    seen.features.duty = *lamp.modulation.duty + doubt.duty * normal(generator);
-    seen.features.dutySigma = std::sqrt(doubt.duty * doubt.duty - std::pow(planner.prediction.dutyError, 2));
+    seen.features.frequency = f + sigma.frequency * normal(generator);
+    seen.features.frequencySigma = std::sqrt(sigma.frequency * sigma.frequency - others * others);
+    seen.features.duty = *lamp.modulation.duty + sigma.duty * normal(generator);
+    seen.features.dutySigma = std::sqrt(sigma.duty * sigma.duty - std::pow(planner.prediction.dutyError, 2));
     recognizer.recognize(seen);
     refused += seen.id.empty();
     wrong += !seen.id.empty() && seen.id != lamp.id;
@@ -204,8 +204,8 @@ TEST(LedIdPlannerStatistics, RecogniserErrsNoMoreThanStated)
   EXPECT_LE(refused + wrong, atMost(1 - plan.acceptance, trials));
 }
 
-// From light on lines to an id, on the planned lamps of the least doubt allowed: clocks, row time and phase
-// are drawn, too.
+// From light on lines to an id, on the planned lamps of the smallest sigmas allowed: clocks, row time and
+// phase are drawn, too.
 TEST(LedIdPlannerStatistics, AnalyserAndRecogniserTellTheLampsApart)
 {
   for (const std::string name : {fullSize, resized}) {

@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// Recognition: the right lamp where one fits, none where none does or two do, every doubt in it.
+// Recognition: the right lamp where one fits, none where none does or two do, every uncertainty in it.
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_identification/vpLedIdRecognizer.h>

@@ -20,8 +20,8 @@
 
 namespace lampDrive
 {
-using lampScene::Doubt;
 using lampScene::Random;
+using lampScene::Sigmas;
 
 //! At constant velocity along x and y of b (m/s) and turn rate (rad/s): an arc.
 struct Arc {
@@ -51,18 +51,19 @@ public:
   std::vector<Eigen::Vector3d> places = {
       {0.9, 0.1, 2.3}, {-0.2, 0.8, 2.5}, {-0.8, -0.3, 2.2}, {0.3, -0.9, 2.6}};
 
-  Drive(unsigned int seed, const Path &path, const Doubt &doubt = Doubt())
-      : m_random(seed), m_path(path), m_doubt(doubt),
-        m_rig(lampScene::withDoubt(lampScene::rigWith(lampScene::frame(0.06, 0.02, 0.2, 0, 0, 0.4)), doubt)),
-        m_lens(m_random, doubt)
+  Drive(unsigned int seed, const Path &path, const Sigmas &sigmas = Sigmas())
+      : m_random(seed), m_path(path), m_sigmas(sigmas),
+        m_rig(
+            lampScene::withSigmas(lampScene::rigWith(lampScene::frame(0.06, 0.02, 0.2, 0, 0, 0.4)), sigmas)),
+        m_lens(m_random, sigmas)
   {
-    const Eigen::Vector3d turn = m_random.normal3(doubt.rotationSigma),
-                          shift = m_random.normal3(doubt.translationSigma);
+    const Eigen::Vector3d turn = m_random.normal3(sigmas.rotationSigma),
+                          shift = m_random.normal3(sigmas.translationSigma);
     m_lean = lampScene::rotation({turn.x(), turn.y(), 0});
     m_bMc = m_lean * lampScene::rotation({0, 0, turn.z()}) * m_rig.bMc;
     m_bMc.insert(vpTranslationVector(0.06 + shift.x(), 0.02 + shift.y(), 0.2 + shift.z()));
     for (size_t k = 0; k < places.size(); ++k) {
-      m_hung.push_back(places[k] + m_random.normal3(Eigen::Vector3d::Constant(doubt.positionSigma)));
+      m_hung.push_back(places[k] + m_random.normal3(Eigen::Vector3d::Constant(sigmas.positionSigma)));
     }
   }
 
@@ -76,11 +77,11 @@ public:
   vpLampSight sight(size_t lamp, double t)
   {
     vpLampSight seen = lampScene::sightOf(std::string(1, static_cast<char>('A' + lamp)), m_hung[lamp],
-                                          m_path(t) * m_bMc, m_doubt.raySigma);
+                                          m_path(t) * m_bMc, m_sigmas.raySigma);
     seen.position = places[lamp];
-    seen.positionSigma = m_doubt.positionSigma;
+    seen.positionSigma = m_sigmas.positionSigma;
     seen.ray = m_lens.seen(seen.ray) +
-               Eigen::Vector2d(m_random.normal(m_doubt.raySigma), m_random.normal(m_doubt.raySigma));
+               Eigen::Vector2d(m_random.normal(m_sigmas.raySigma), m_random.normal(m_sigmas.raySigma));
     return seen;
   }
 
@@ -105,7 +106,7 @@ public:
 private:
   Random m_random;
   Path m_path;
-  Doubt m_doubt;
+  Sigmas m_sigmas;
   vpVlpRig m_rig;
   lampScene::LensError m_lens;
   vpHomogeneousMatrix m_lean, m_bMc;   // as they are

@@ -140,7 +140,7 @@ inline double tiltOf(const vpHomogeneousMatrix &wMb)
   A world as the rig and the map do not quite claim it: lamps off their places, camera off its mount, its lens
   off its calibration, image points off their places, each by its stated sigma.
 */
-struct Doubt {
+struct Sigmas {
   double raySigma = 3e-4;
   double positionSigma = 0;
   Eigen::Vector3d translationSigma = Eigen::Vector3d::Zero();
@@ -154,14 +154,14 @@ struct LensError {
   Eigen::Vector2d principalPoint = Eigen::Vector2d::Zero(); // normalised units
   double focalLength = 0;                                   // share
 
-  LensError(Random &random, const Doubt &doubt)
+  LensError(Random &random, const Sigmas &sigmas)
   {
-    if (doubt.principalPointSigma > 0) {
-      principalPoint =
-          Eigen::Vector2d(random.normal(doubt.principalPointSigma), random.normal(doubt.principalPointSigma));
+    if (sigmas.principalPointSigma > 0) {
+      principalPoint = Eigen::Vector2d(random.normal(sigmas.principalPointSigma),
+                                       random.normal(sigmas.principalPointSigma));
     }
-    if (doubt.focalLengthSigma > 0) {
-      focalLength = random.normal(doubt.focalLengthSigma);
+    if (sigmas.focalLengthSigma > 0) {
+      focalLength = random.normal(sigmas.focalLengthSigma);
     }
   }
   //! Where a calibrated camera would have a ray.
@@ -175,35 +175,35 @@ struct Draw {
 
 //! \e wMb is where the level base stands; \e rig and \e places are the claims.
 inline Draw draw(Random &random, const vpVlpRig &rig, const vpHomogeneousMatrix &wMb,
-                 const std::vector<Eigen::Vector3d> &places, const Doubt &doubt)
+                 const std::vector<Eigen::Vector3d> &places, const Sigmas &sigmas)
 {
-  const Eigen::Vector3d turn = random.normal3(doubt.rotationSigma);
-  const Eigen::Vector3d shift = random.normal3(doubt.translationSigma);
+  const Eigen::Vector3d turn = random.normal3(sigmas.rotationSigma);
+  const Eigen::Vector3d shift = random.normal3(sigmas.translationSigma);
   Draw drawn;
   drawn.wMb = wMb * rotation({turn.x(), turn.y(), 0});
   vpHomogeneousMatrix bMc = rotation({turn.x(), turn.y(), 0}) * rotation({0, 0, turn.z()}) * rig.bMc;
   bMc.insert(
       vpTranslationVector(rig.bMc[0][3] + shift.x(), rig.bMc[1][3] + shift.y(), rig.bMc[2][3] + shift.z()));
   const vpHomogeneousMatrix wMc = wMb * bMc;
-  const LensError lens(random, doubt);
+  const LensError lens(random, sigmas);
   for (size_t k = 0; k < places.size(); ++k) {
-    const Eigen::Vector3d place = places[k] + random.normal3(Eigen::Vector3d::Constant(doubt.positionSigma));
-    vpLampSight sight = sightOf(std::string(1, static_cast<char>('A' + k)), place, wMc, doubt.raySigma);
+    const Eigen::Vector3d place = places[k] + random.normal3(Eigen::Vector3d::Constant(sigmas.positionSigma));
+    vpLampSight sight = sightOf(std::string(1, static_cast<char>('A' + k)), place, wMc, sigmas.raySigma);
     sight.position = places[k];
-    sight.positionSigma = doubt.positionSigma;
-    sight.ray =
-        lens.seen(sight.ray) + Eigen::Vector2d(random.normal(doubt.raySigma), random.normal(doubt.raySigma));
+    sight.positionSigma = sigmas.positionSigma;
+    sight.ray = lens.seen(sight.ray) +
+                Eigen::Vector2d(random.normal(sigmas.raySigma), random.normal(sigmas.raySigma));
     drawn.lamps.push_back(sight);
   }
   return drawn;
 }
 
-inline vpVlpRig withDoubt(vpVlpRig rig, const Doubt &doubt)
+inline vpVlpRig withSigmas(vpVlpRig rig, const Sigmas &sigmas)
 {
-  rig.translationSigma = doubt.translationSigma;
-  rig.rotationSigma = doubt.rotationSigma;
-  rig.principalPointSigma = doubt.principalPointSigma * rig.camera.get_px();
-  rig.focalLengthSigma = doubt.focalLengthSigma;
+  rig.translationSigma = sigmas.translationSigma;
+  rig.rotationSigma = sigmas.rotationSigma;
+  rig.principalPointSigma = sigmas.principalPointSigma * rig.camera.get_px();
+  rig.focalLengthSigma = sigmas.focalLengthSigma;
   return rig;
 }
 
@@ -222,7 +222,7 @@ struct ChiSquareMean {
   double halfWidth(double degreesOfFreedom) const { return 1.96 * std::sqrt(2 * degreesOfFreedom / count); }
 };
 
-//! Normalised estimation error squared over those rows that \e fix has doubt of.
+//! Normalised estimation error squared over those rows of which \e fix states a sigma.
 inline double nees(const vpVlpFix &fix, const vpHomogeneousMatrix &truth, int *degreesOfFreedom = nullptr)
 {
   const Vector6d error = poseError(truth, fix.wMb);

@@ -310,7 +310,7 @@ TEST(FarFrames, FrameLinearisedAboutItsOwnPathIsAsGoodAsItSays)
     Random random(seed);
     const Arc arc{
         0.1, -0.1, random.uniform(-3, 3), random.normal(0.2), random.normal(0.2), random.normal(0.3)};
-    Doubt sharp;
+    Sigmas sharp;
     sharp.raySigma = 5e-5;
     Drive drive(
         seed, [&arc](double t) { return arc.at(t); }, sharp);
@@ -318,7 +318,7 @@ TEST(FarFrames, FrameLinearisedAboutItsOwnPathIsAsGoodAsItSays)
     vpVlpFilter filter(drive.rig());
     filter.startTurnRate = 0.3; // what is of second order in the first frame's motion is not to count
     drive.start(filter);
-    filter.calm(0);
+    filter.setManoeuvreShare(0);
     Drive first = drive;
     first.frame(filter, 0);
     filter.startAgain();
@@ -380,7 +380,7 @@ TEST(FarFrames, PointsThatAreOffAlikeInEveryFrameDoNotAverageOut)
       for (const vpLampSight &lamp : lamps) {
         filter.update(lamp);
       }
-      filter.calm(0.002);
+      filter.setManoeuvreShare(0.002);
       filter.conclude();
     }
     mean.add(lampScene::nees(filter.now(), drive.truth(0)));

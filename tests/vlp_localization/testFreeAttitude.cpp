@@ -84,19 +84,19 @@ double tiltBetween(const vpHomogeneousMatrix &one, const vpHomogeneousMatrix &ot
 }
 
 // Mean NEES and chi-square of the unambiguous fixes of five lamps.
-void expectConsistent(unsigned int seed, const Doubt &doubt, int degreesOfFreedom, double lean)
+void expectConsistent(unsigned int seed, const Sigmas &sigmas, int degreesOfFreedom, double lean)
 {
   Random random(seed);
   ChiSquareMean error, chiSquare;
   int ambiguous = 0;
   while (error.count < 1500) {
-    const vpVlpRig rig = withDoubt(randomRig(random, 0.2), doubt);
+    const vpVlpRig rig = withSigmas(randomRig(random, 0.2), sigmas);
     const vpHomogeneousMatrix wMb = leaningBase(random, lean);
     const std::vector<Eigen::Vector3d> places = lampsAround(random, wMb, 5);
     if (!allInFront(places, wMb * rig.bMc))
       continue;
-    const Eigen::Vector3d turn = random.normal3(doubt.rotationSigma); // of base and camera as one
-    Doubt others = doubt;
+    const Eigen::Vector3d turn = random.normal3(sigmas.rotationSigma); // of base and camera as one
+    Sigmas others = sigmas;
     others.rotationSigma.head<2>().setZero();
     const Draw drawn = draw(random, rig, wMb * rotation({turn.x(), turn.y(), 0}), places, others);
     const vpVlpFix fix = freeSolver().solve(drawn.lamps, rig);

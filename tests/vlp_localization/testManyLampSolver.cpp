@@ -31,14 +31,14 @@ std::vector<Eigen::Vector3d> randomLamps(Random &random, const vpHomogeneousMatr
 }
 
 // Mean NEES and mean chi-square over draws of a random robot under four random lamps.
-void expectConsistent(unsigned int seed, const Doubt &doubt, int rows, double height = 0)
+void expectConsistent(unsigned int seed, const Sigmas &sigmas, int rows, double height = 0)
 {
   Random random(seed);
   ChiSquareMean error, chiSquare;
   while (error.count < 4000) {
-    const vpVlpRig rig = withDoubt(randomRig(random, 0.3), doubt);
+    const vpVlpRig rig = withSigmas(randomRig(random, 0.3), sigmas);
     const vpHomogeneousMatrix wMb = randomBase(random);
-    const Draw drawn = draw(random, rig, wMb, randomLamps(random, wMb, rig, 4, height), doubt);
+    const Draw drawn = draw(random, rig, wMb, randomLamps(random, wMb, rig, 4, height), sigmas);
     const vpVlpFix fix = vpManyLampSolver().solve(drawn.lamps, rig);
     ASSERT_TRUE(fix.valid) << fix.refusal;
     ASSERT_EQ(fix.degreesOfFreedom, 4);
@@ -130,8 +130,8 @@ TEST(ManyLampSolver, BeatsTheBestPair)
   RecordProperty("rmsPair_mm", std::to_string(1000 * std::sqrt(two / 500)));
 }
 
-// The better the image point, the more it counts: the lamp with ten times the doubt is left to its own.
-TEST(ManyLampSolver, WeighsLampsByTheirDoubt)
+// The better the image point, the more it counts: a lamp of ten times the standard deviation hardly counts.
+TEST(ManyLampSolver, WeighsLampsByTheirCovariance)
 {
   const vpVlpRig rig = rigWith(vpHomogeneousMatrix());
   std::vector<vpLampSight> lamps = {sightOf("A", {-1, 0, 2}, rig.bMc, 1e-5),
@@ -208,7 +208,7 @@ TEST(ManyLampSolver, ConsistentWithTiltOfTheMount)
   expectConsistent(34, {5e-4, 0, {0, 0, 0}, {0.002, 0.004, 0}}, 6);
 }
 
-TEST(ManyLampSolver, ConsistentWithAllDoubtAtOnce)
+TEST(ManyLampSolver, ConsistentWithAllSigmasAtOnce)
 {
   expectConsistent(35, {5e-4, 0.003, {0.002, 0.004, 0.003}, {0.004, 0.003, 0.006}}, 6);
 }

@@ -119,11 +119,11 @@ TEST(Tracking, SecondFrameOfASlowCameraIsAsGoodAsTheNext)
       EXPECT_LT(errorOf(location.fix, arc(t)), 0.0003) << k;
     }
   }
-  EXPECT_FALSE(localizer.filter.doubtsClaims());
+  EXPECT_FALSE(localizer.filter.claimsWidened());
 }
 
 // Readout of 0.1 s, fine pixels: that lamps show no constant velocity is no fault of the map.
-TEST(Tracking, LongReadoutOfARobotThatAcceleratesDoesNotMakeItDoubtTheMap)
+TEST(Tracking, LongReadoutOfARobotThatAcceleratesDoesNotWidenTheClaims)
 {
   Room room;
   room.camera = {2880, 2400, 2400};
@@ -135,15 +135,15 @@ TEST(Tracking, LongReadoutOfARobotThatAcceleratesDoesNotMakeItDoubtTheMap)
     const double t = k / 8.0;
     const vpVlpLocation location = localizer.process(room.frame(t, circle));
     ASSERT_TRUE(location.fix.valid) << k << ": " << location.fix.refusal;
-    EXPECT_FALSE(localizer.filter.doubtsClaims()) << k;
+    EXPECT_FALSE(localizer.filter.claimsWidened()) << k;
     if (k > 0) {
       EXPECT_LT(errorOf(location.fix, circle(t)), 0.0003) << k;
     }
   }
 }
 
-// Faster than any motor: whatever it does, two frames later the pose is as good as before, and map and camera
-// are still believed.
+// Faster than any motor: whatever it does, two frames later the pose is as good as before, and the claims of
+// map and camera are not widened.
 TEST(Tracking, RobotThatStopsAndTurnsAtOnceIsFollowed)
 {
   const Room room;
@@ -163,7 +163,7 @@ TEST(Tracking, RobotThatStopsAndTurnsAtOnceIsFollowed)
       EXPECT_LT(errorOf(location.fix, path(t)), 0.001) << k;
     }
   }
-  EXPECT_FALSE(localizer.filter.doubtsClaims());
+  EXPECT_FALSE(localizer.filter.claimsWidened());
 }
 
 TEST(Tracking, FrameThatIsNotLaterIsRefusedInOneLineAndTheNextGoesOn)

@@ -17,12 +17,12 @@ namespace
 using Complex = std::complex<double>;
 
 // Mean NEES over draws of a random robot under two random lamps.
-void expectConsistent(unsigned int seed, const Doubt &doubt, int degreesOfFreedom, double height = 0)
+void expectConsistent(unsigned int seed, const Sigmas &sigmas, int degreesOfFreedom, double height = 0)
 {
   Random random(seed);
   ChiSquareMean mean;
   while (mean.count < 4000) {
-    const vpVlpRig rig = withDoubt(randomRig(random, 0.3), doubt);
+    const vpVlpRig rig = withSigmas(randomRig(random, 0.3), sigmas);
     const vpHomogeneousMatrix wMb = randomBase(random), wMc = wMb * rig.bMc;
     std::vector<Eigen::Vector3d> places;
     while (places.size() < 2) {
@@ -32,7 +32,7 @@ void expectConsistent(unsigned int seed, const Doubt &doubt, int degreesOfFreedo
     }
     if ((places[0] - places[1]).head<2>().norm() < 0.8)
       continue; // where the first order is far enough
-    const Draw drawn = draw(random, rig, wMb, places, doubt);
+    const Draw drawn = draw(random, rig, wMb, places, sigmas);
     const vpVlpFix fix = vpTwoLampSolver().solve(drawn.lamps[0], drawn.lamps[1], rig);
     if (!fix.valid || fix.ambiguous || fix.covariance(2, 2) > 0.0025)
       continue;
@@ -79,13 +79,13 @@ TEST(TwoLampCovariance, YawAndHeightAreTheKnownFormula)
   const double known = std::sqrt(2.0) * sigma / (second.ray - first.ray).norm();
   EXPECT_NEAR(std::sqrt(fix.covariance(5, 5)), known, 1e-9);
   EXPECT_NEAR(std::sqrt(fix.covariance(2, 2)) / 1.5, known, 1e-9);
-  EXPECT_EQ(fix.covariance(3, 3), 0); // the rig states no doubt of roll and pitch
+  EXPECT_EQ(fix.covariance(3, 3), 0); // the rig states no sigma of roll and pitch
   EXPECT_EQ(fix.covariance(4, 4), 0);
 }
 
-// The lamps' doubt is common to x and y of both: straight below the middle of two lamps the base moves by
-// their mean.
-TEST(TwoLampCovariance, MapDoubtAtTheMiddle)
+// The errors of the lamps' places are common to x and y of both: straight below the middle of two lamps the
+// base moves by their mean.
+TEST(TwoLampCovariance, MapSigmaAtTheMiddle)
 {
   const vpVlpRig rig = rigWith(vpHomogeneousMatrix());
   vpLampSight first = sightOf("A", {-0.5, 0, 2}, rig.bMc, 1e-9),
@@ -158,7 +158,7 @@ TEST(TwoLampCovariance, ConsistentWithTheLens)
   expectConsistent(26, {3e-4, 0, {0, 0, 0}, {0, 0, 0}, 0.003, 0.005}, 4);
 }
 
-TEST(TwoLampCovariance, ConsistentWithAllDoubtAtOnce)
+TEST(TwoLampCovariance, ConsistentWithAllSigmasAtOnce)
 {
   expectConsistent(25, {5e-4, 0.003, {0.002, 0.004, 0.003}, {0.003, 0.005, 0.006}, 0.002, 0.004}, 6);
 }

@@ -247,7 +247,7 @@ TEST(TwoLampSolver, RefusesWhatIsNotANumber)
   EXPECT_THAT(refusalOf(lampAt("A", 0, 0, 2), bad), HasSubstr("lamp B: the covariance"));
 }
 
-TEST(TwoLampSolver, BestPairHasTheSmallestPositionDoubt)
+TEST(TwoLampSolver, BestPairHasTheSmallestPositionCovariance)
 {
   Random random(11);
   for (int i = 0; i < 200; ++i) {

@@ -80,13 +80,13 @@ bool symmetricAndNotNegative(const Eigen::Matrix<double, N, N> &covariance)
 
 TEST(VlpFilter, TwoLampsSeenOnceGiveThePoseOfTheTwoLampSolver)
 {
-  Doubt claims;
+  Sigmas claims;
   claims.positionSigma = 0.003;
   claims.translationSigma = {0.002, 0.001, 0.003};
   claims.rotationSigma = {0.003, 0.004, 0.002};
-  for (const Doubt &doubt : {Doubt(), claims}) {
+  for (const Sigmas &sigmas : {Sigmas(), claims}) {
     for (unsigned int seed = 1; seed <= 50; ++seed) {
-      Drive drive(seed, stand, doubt);
+      Drive drive(seed, stand, sigmas);
       const vpLampSight first = drive.sight(0, 0), second = drive.sight(2, 0);
       const vpVlpFix solved = vpTwoLampSolver().solve(first, second, drive.rig());
       ASSERT_TRUE(solved.valid) << solved.refusal;
@@ -216,9 +216,9 @@ TEST(VlpFilter, WithoutLampsItCoastsAndIsLostInTheEnd)
 TEST(VlpFilter, LampBehindTheCameraChangesNothing)
 {
   for (double positionSigma : {0.0, 0.01}) {
-    Doubt doubt;
-    doubt.positionSigma = positionSigma;
-    Drive drive(1, stand, doubt);
+    Sigmas sigmas;
+    sigmas.positionSigma = positionSigma;
+    Drive drive(1, stand, sigmas);
     vpVlpFilter filter(drive.rig());
     drive.start(filter);
     drive.frame(filter, 0);
@@ -254,7 +254,7 @@ TEST(VlpFilter, BeforeItsStartNothingHappens)
   EXPECT_FALSE(filter.started());
 }
 
-TEST(VlpFilter, InnovationIsWhatTheLampSaysBeforeItIsBelieved)
+TEST(VlpFilter, InnovationIsKnownBeforeTheUpdate)
 {
   Drive drive(4, stand);
   vpVlpFilter filter(drive.rig());
@@ -301,12 +301,12 @@ TEST(VlpFilter, YawGoesRoundAtHalfATurn)
 
 TEST(VlpFilter, CovarianceStaysSymmetricAndNotNegative)
 {
-  Doubt doubt;
-  doubt.positionSigma = 0.004;
-  doubt.rotationSigma = {0.01, 0.01, 0.005};
-  doubt.translationSigma.setConstant(0.002);
+  Sigmas sigmas;
+  sigmas.positionSigma = 0.004;
+  sigmas.rotationSigma = {0.01, 0.01, 0.005};
+  sigmas.translationSigma.setConstant(0.002);
   for (const bool free : {false, true}) {
-    Drive drive(7, stand, doubt);
+    Drive drive(7, stand, sigmas);
     Random random(8);
     vpVlpFilter filter(drive.rig());
     filter.freeAttitude = free;
@@ -323,7 +323,7 @@ TEST(VlpFilter, CovarianceStaysSymmetricAndNotNegative)
       if (random.uniform(0, 1) < 0.5) {
         filter.update(drive.sight(lamp, t));
       }
-      filter.calm(random.uniform(0, 1));
+      filter.setManoeuvreShare(random.uniform(0, 1));
       const vpVlpFix now = filter.now(), marked = filter.marked();
       ASSERT_TRUE(symmetricAndNotNegative(now.covariance)) << k;
       ASSERT_TRUE(symmetricAndNotNegative(marked.covariance)) << k;
@@ -341,43 +341,44 @@ TEST(VlpFilter, MixtureHasTheMeanAndCovarianceOfItsParts)
     drive.frame(before, k * frameTime);
   }
   std::vector<vpVlpFilter> parts(2, before);
-  parts[0].calm(0.002);
-  parts[1].rouse();
+  parts[0].setManoeuvreShare(0.002);
+  parts[1].allowManoeuvre();
   for (vpVlpFilter &part : parts) {
     drive.frame(part, 10 * frameTime);
   }
-  const vpVlpFix calm = parts[0].now(), roused = parts[1].now();
+  const vpVlpFix steady = parts[0].now(), manoeuvring = parts[1].now();
   vpVlpFilter mixed = parts[0];
   mixed.mix({&parts[0], &parts[1]}, {0.75, 0.25});
   const vpVlpFix mixture = mixed.now();
   for (unsigned int i = 0; i < 2; ++i) {
-    const double apart = calm.wMb[i][3] - roused.wMb[i][3];
-    EXPECT_NEAR(mixture.wMb[i][3], 0.75 * calm.wMb[i][3] + 0.25 * roused.wMb[i][3], 1e-12);
+    const double apart = steady.wMb[i][3] - manoeuvring.wMb[i][3];
+    EXPECT_NEAR(mixture.wMb[i][3], 0.75 * steady.wMb[i][3] + 0.25 * manoeuvring.wMb[i][3], 1e-12);
     EXPECT_NEAR(mixture.covariance(i, i),
-                0.75 * calm.covariance(i, i) + 0.25 * roused.covariance(i, i) + 0.75 * 0.25 * apart * apart,
+                0.75 * steady.covariance(i, i) + 0.25 * manoeuvring.covariance(i, i) +
+                    0.75 * 0.25 * apart * apart,
                 1e-15);
   }
   mixed = parts[1];
   mixed.mix({&parts[0]}, {1});
-  EXPECT_LT(lampScene::poseError(mixed.now().wMb, calm.wMb).norm(), 1e-12);
-  EXPECT_LT((mixed.now().covariance - calm.covariance).norm(), 1e-15);
+  EXPECT_LT(lampScene::poseError(mixed.now().wMb, steady.wMb).norm(), 1e-12);
+  EXPECT_LT((mixed.now().covariance - steady.covariance).norm(), 1e-15);
 }
 
-TEST(VlpFilter, DoubtedClaimsCountFromTheNextStartOn)
+TEST(VlpFilter, WidenedClaimsCountFromTheNextStartOn)
 {
   Drive drive(1, stand);
   vpVlpFilter filter(drive.rig());
-  EXPECT_FALSE(filter.doubtsClaims());
+  EXPECT_FALSE(filter.claimsWidened());
   double before = 0;
-  for (int doubts = 0; doubts < 4; ++doubts) {
+  for (int times = 0; times < 4; ++times) {
     drive.start(filter);
     for (int k = 0; k < 5; ++k) {
       drive.frame(filter, k * frameTime);
     }
-    EXPECT_GT(placeSigma(filter.now()), 1.5 * before) << doubts;
+    EXPECT_GT(placeSigma(filter.now()), 1.5 * before) << times;
     before = placeSigma(filter.now());
-    filter.doubtClaims();
-    EXPECT_TRUE(filter.doubtsClaims());
+    filter.widenClaims();
+    EXPECT_TRUE(filter.claimsWidened());
     EXPECT_EQ(placeSigma(filter.now()), before);
   }
 }

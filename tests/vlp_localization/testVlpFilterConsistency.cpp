@@ -62,7 +62,7 @@ struct Result {
 };
 
 //! Last fixes of drives of ten frames each. \e share: of the random accelerations.
-Result drives(int count, double share, const Doubt &doubt)
+Result drives(int count, double share, const Sigmas &sigmas)
 {
   Result result;
   for (int seed = 1; seed <= count; ++seed) {
@@ -71,11 +71,11 @@ Result drives(int count, double share, const Doubt &doubt)
     Random random(static_cast<unsigned int>(1000 + seed));
     const RandomWalk walk(random, pattern, share, 0.5);
     Drive drive(
-        static_cast<unsigned int>(seed), [&](double t) { return walk.at(t); }, doubt);
+        static_cast<unsigned int>(seed), [&](double t) { return walk.at(t); }, sigmas);
     vpVlpFilter filter(drive.rig());
     settings(filter);
     drive.start(filter);
-    share > 0 ? filter.rouse() : filter.calm(0);
+    share > 0 ? filter.allowManoeuvre() : filter.setManoeuvreShare(0);
     double t = 0;
     for (int k = 0; k < 10; ++k) {
       t = k * frameTime;
@@ -98,25 +98,25 @@ void expectConsistent(const Result &result, int rows)
   testing::Test::RecordProperty("now", std::to_string(result.now.mean()));
 }
 
-const Doubt claimed = [] {
-  Doubt doubt;
-  doubt.positionSigma = 0.005;
-  doubt.translationSigma.setConstant(0.002);
-  doubt.rotationSigma = {0.004, 0.004, 0.003};
-  doubt.principalPointSigma = 0.002;
-  doubt.focalLengthSigma = 0.003;
-  return doubt;
+const Sigmas claimed = [] {
+  Sigmas sigmas;
+  sigmas.positionSigma = 0.005;
+  sigmas.translationSigma.setConstant(0.002);
+  sigmas.rotationSigma = {0.004, 0.004, 0.003};
+  sigmas.principalPointSigma = 0.002;
+  sigmas.focalLengthSigma = 0.003;
+  return sigmas;
 }();
 } // namespace
 
 TEST(VlpFilterConsistency, ConstantMotion)
 {
-  expectConsistent(drives(300, 0, Doubt()), 4);
+  expectConsistent(drives(300, 0, Sigmas()), 4);
 }
 
 TEST(VlpFilterConsistency, RandomAccelerations)
 {
-  expectConsistent(drives(300, 1, Doubt()), 4);
+  expectConsistent(drives(300, 1, Sigmas()), 4);
 }
 
 TEST(VlpFilterConsistency, ConstantMotionUnderClaimsThatHold)
@@ -132,11 +132,11 @@ TEST(VlpFilterConsistency, RandomAccelerationsUnderClaimsThatHold)
 // A filter that linearises about each pose anew would learn the heading from its own corrections.
 TEST(VlpFilterConsistency, OneLampAloneForLongTellsNothingThatItDoesNotShow)
 {
-  for (const bool calming : {false, true}) {
+  for (const bool steady : {false, true}) {
     lampScene::ChiSquareMean mean;
     for (unsigned int seed = 1; seed <= 40; ++seed) {
       const Arc arc{-0.1, 0.05, 0.2, 0.1, 0, 0.15};
-      Doubt sharp;
+      Sigmas sharp;
       sharp.raySigma = 1e-4;
       const auto path = [&arc](double t) { return arc.at(t); };
       Drive drive(seed, path, sharp);
@@ -146,15 +146,15 @@ TEST(VlpFilterConsistency, OneLampAloneForLongTellsNothingThatItDoesNotShow)
       for (; k < 15; ++k) {
         drive.frame(filter, k * frameTime);
       }
-      filter.rouse();
+      filter.allowManoeuvre();
       double before = 0;
       for (; k < 60; ++k) {
         const double t = k * frameTime;
         filter.mark(t);
         filter.update(drive.sight(0, t));
         const double heading = std::sqrt(filter.now().covariance(5, 5));
-        if (calming) {
-          filter.calm(0.03);
+        if (steady) {
+          filter.setManoeuvreShare(0.03);
         } else { // nothing says that it goes on as before
           EXPECT_GT(heading, 0.97 * before) << k << ", seed " << seed;
         }
@@ -166,8 +166,8 @@ TEST(VlpFilterConsistency, OneLampAloneForLongTellsNothingThatItDoesNotShow)
       mean.add(lampScene::nees(fix, arc.at(filter.time())));
     }
     // One-sided: the drive is calmer than the accelerations reckoned with. 99 of 100 means lie below.
-    EXPECT_LT(mean.mean(), 3 + 2.326 / 1.96 * mean.halfWidth(3)) << calming;
-    testing::Test::RecordProperty(calming ? "calming" : "roused", std::to_string(mean.mean()));
+    EXPECT_LT(mean.mean(), 3 + 2.326 / 1.96 * mean.halfWidth(3)) << steady;
+    testing::Test::RecordProperty(steady ? "steady" : "manoeuvring", std::to_string(mean.mean()));
   }
 }
 
@@ -178,7 +178,7 @@ TEST(VlpFilterConsistency, StandingStillDoesNotAverageClaimsAway)
       1, [](double) { return vpHomogeneousMatrix(); }, claimed);
   vpVlpFilter filter(drive.rig());
   drive.start(filter);
-  filter.calm(0);
+  filter.setManoeuvreShare(0);
   double after10 = 0;
   for (int k = 0; k < 200; ++k) {
     drive.frame(filter, k * frameTime);

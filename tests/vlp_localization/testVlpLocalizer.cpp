@@ -125,8 +125,8 @@ TEST(VlpLocalizer, LampThatHangsElsewhereIsLeftOut)
   }
 }
 
-// Whatever the map says of its lamps' doubt is no contradiction.
-TEST(VlpLocalizer, LampWithinItsStatedDoubtCounts)
+// What lies within the sigma that the map states for its lamps is no contradiction.
+TEST(VlpLocalizer, LampWithinItsStatedSigmaCounts)
 {
   Room room;
   room.map.lamps[1].position.x() += 0.02;

@@ -193,7 +193,7 @@ TEST(ServoLog, ReadsBackWhatItWrote)
     EXPECT_NEAR(before[i].across, after[i].across, 1e-9);
     EXPECT_NEAR(before[i].heading, after[i].heading, 1e-9);
   }
-  EXPECT_EQ(read.believedErrors().size(), log.believedErrors().size());
+  EXPECT_EQ(read.estimatedErrors().size(), log.estimatedErrors().size());
   EXPECT_EQ(vpReadOdometry(folder / "odometry.csv").size(), log.run.odometry.size());
 }
 

@@ -96,7 +96,7 @@ TEST(LampLight, IsWhatCountingSmallStepsGives)
       const vpLampLight light(modulation, 1, phase);
       const vpLampLight::Exposed exact = light.over(from, from + exposure);
       const vpLampLight::Exposed slow = counted(modulation, phase, {}, from, from + exposure, steps);
-      // A step of doubt at each edge, of which there are two in a period, seven in a word's.
+      // A step of uncertainty at each edge, of which there are two in a period, seven in a word's.
       const double edges = 2 + 14 * exposure * std::max(modulation.repetitionFrequency(), 1.0);
       EXPECT_NEAR(exact.share, slow.share, edges / steps);
       if (slow.share > 0.1) {

@@ -32,11 +32,11 @@ std::vector<vpVlpFrame> all(vpSimulation &simulation)
 }
 
 //! Of the camera in the base, rad about x and y of b; of small angles.
-Eigen::Vector2d tiltOf(const vpVlpRig &rig, const vpVlpRig &believed)
+Eigen::Vector2d tiltOf(const vpVlpRig &rig, const vpVlpRig &stated)
 {
   vpRotationMatrix bRc, claimed;
   rig.bMc.extract(bRc);
-  believed.bMc.extract(claimed);
+  stated.bMc.extract(claimed);
   const vpRotationMatrix turn = bRc * claimed.t();
   return {0.5 * (turn[2][1] - turn[1][2]), 0.5 * (turn[0][2] - turn[2][0])};
 }

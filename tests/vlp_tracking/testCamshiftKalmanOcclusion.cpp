@@ -69,7 +69,7 @@ TEST(CamshiftKalmanOcclusion, SimilarityFallsWithWhatIsHidden)
   }
 }
 
-TEST(CamshiftKalmanOcclusion, DoubtGrowsWithEachFrameNotSeen)
+TEST(CamshiftKalmanOcclusion, SigmaGrowsWithEachFrameNotSeen)
 {
   const vpTargetScene made = hidden(scene(1), 20, 35);
   vpCamshiftKalmanTracker tracker;

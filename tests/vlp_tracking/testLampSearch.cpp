@@ -12,7 +12,7 @@ using namespace lampScene;
 
 namespace
 {
-const int firstFrames = 8; // after which glances will do
+const int firstFrames = 8; // after which reacquisition will do
 
 std::vector<Lamp> with(std::vector<Lamp> lamps, const Lamp &another)
 {

@@ -175,7 +175,7 @@ TEST(StrangePictures, ColourTargetLeavesOverEachSideAndComesBack)
   }
 }
 
-// Hours of waiting: what is raised to the power of the frames since, and the doubt, stay numbers.
+// Hours of waiting: what is raised to the power of the frames since, and the sigma, stay finite.
 TEST(StrangePictures, TargetThatNeverComesBackIsWaitedForWithoutEnd)
 {
   vpTargetScene made = scene(1);

@@ -30,7 +30,7 @@ int main(int argc, char **argv)
         static_cast<size_t>(static_cast<double>(scenario.frames) * std::atof(argv[2]) / scenario.frameRate);
     scenario.frameRate = std::atof(argv[2]);
     vpSimulation simulation(scenario, 1);
-    const vpVlpRig &rig = simulation.rig(); // what the robot believes
+    const vpVlpRig &rig = simulation.rig(); // as the robot's files state
     const vpLampMap &map = simulation.map();
 
     vpShutterCalibration shutter(rig, map);

@@ -53,8 +53,8 @@ int main(int argc, char **argv)
     lamp.duty = 0.5;
     for (const double frequency : {1000., 2000., 2266.}) {
       lamp.frequency = frequency;
-      const vpStripeDoubt doubt = planner.prediction.doubt(lamp, lines, crystal);
-      std::printf("%.0f Hz is told to %.1f Hz, its duty to %.3f\n", frequency, doubt.frequency, doubt.duty);
+      const vpStripeUncertainty sigma = planner.prediction.uncertainty(lamp, lines, crystal);
+      std::printf("%.0f Hz is told to %.1f Hz, its duty to %.3f\n", frequency, sigma.frequency, sigma.duty);
     }
 
     const vpLedIdPlan all = planner.largest(lines, crystal);

@@ -29,7 +29,7 @@ vpLamp lamp(const std::string &id, double x, double y, double frequency)
 
 vpScenario smallWorld()
 {
-  vpScenario scenario; // what the robot believes, and where the world differs
+  vpScenario scenario; // what the robot's files state, and where the world differs
   scenario.rig.width = 640, scenario.rig.height = 480;
   scenario.rig.camera.initPersProjWithoutDistortion(600, 600, 319.5, 239.5);
   scenario.rig.shutter.rowTime = scenario.rig.shutter.exposure = 30e-6; // s

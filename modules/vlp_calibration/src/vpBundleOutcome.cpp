@@ -117,9 +117,9 @@ std::vector<std::string> vpBundleProblem::unseparated()
 */
 Eigen::MatrixXd vpBundleProblem::covariance()
 {
-  static const double surprising = 3; // standard deviations of the weight
+  static const double significant = 3; // standard deviations of the weight
   const double found = m_imageWeight, chance = std::sqrt(0.5 / std::max(1.0, m_imageRedundancy));
-  m_imageWeight = found > 1 - surprising * chance ? 1 : found;
+  m_imageWeight = found > 1 - significant * chance ? 1 : found;
   const Eigen::MatrixXd inverse = vpInverseOf(equations().information());
   m_imageWeight = found;
   return inverse;

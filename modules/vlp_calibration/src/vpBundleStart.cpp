@@ -25,7 +25,7 @@ const char *const noStart =
     "no frame shows two lamps whose places are known; begin where two of them are in view, "
     "and check with vlp-locate --overlay that they are recognised";
 
-bool believed(const vpLampBundle &bundle, size_t lamp)
+bool hasPrior(const vpLampBundle &bundle, size_t lamp)
 {
   return std::isfinite(bundle.lampSigma[lamp]);
 }
@@ -84,7 +84,7 @@ vpBundleStart::vpBundleStart(const vpLampBundle &bundle, const std::vector<vpLam
   }
   m_placed.assign(views.size(), false);
   for (size_t k = 0; k < map.lamps.size(); ++k) {
-    m_known.push_back(believed(bundle, k));
+    m_known.push_back(hasPrior(bundle, k));
   }
   if (bundle.distance) {
     placeByWheels(runs);
@@ -246,8 +246,8 @@ void vpBundleStart::turnHeading(const vpLampBundle &bundle, const std::vector<vp
 }
 
 /*!
-  Lamps that are not believed, each where its rays from the poses so far come nearest to each other. \return
-  Whether new ones are known, by rays that come from enough directions.
+  Lamps whose map position is no prior, each where its rays from the poses so far come nearest to each other.
+  \return Whether new ones are known, by rays that come from enough directions.
 */
 bool vpBundleStart::placeLamps(const vpLampBundle &bundle, const std::vector<vpLampRun> &runs)
 {
@@ -278,8 +278,8 @@ bool vpBundleStart::placeLamps(const vpLampBundle &bundle, const std::vector<vpL
     const Rays &own = rays[k];
     const Eigen::Vector3d place = own.across.ldlt().solve(own.through);
     const double reach = (place - btc).norm();
-    // A lamp seen from one place only keeps the map's word: what is wrong with it comes out in its doubt.
-    if (!believed(bundle, k) && place.allFinite() && place.z() > btc.z() && reach < 1000) {
+    // A lamp seen from one place only keeps the map's position: its covariance shows what is wrong with it.
+    if (!hasPrior(bundle, k) && place.allFinite() && place.z() > btc.z() && reach < 1000) {
       map.lamps[k].position = place;
       static const int fewest = 10;         // rays
       static const double leastAngle = 0.1; // rad, of the rays to their mean, root mean square

@@ -25,10 +25,10 @@ struct vpBundleView {
 };
 
 /*!
-  Where Levenberg-Marquardt starts from: poses of the frames and places of lamps that are not believed. A
-  frame that shows two lamps whose places are known has its pose from these (vpManyLampSolver); a lamp that is
-  not believed is where the rays from such poses come nearest to each other, and is known then. So it goes on
-  from the lamps that are believed; what is left follows its neighbours along the odometry.
+  Where Levenberg-Marquardt starts from: poses of the frames, and places of lamps whose map position is no
+  prior. A frame that shows two lamps whose places are known has its pose from these (vpManyLampSolver); a
+  lamp without a prior is where the rays from such poses come nearest to each other, and is known then. So it
+  goes on from the lamps that have a prior; what is left follows its neighbours along the odometry.
 */
 struct vpBundleStart {
   std::string refusal; // one line, where there is no start
@@ -51,7 +51,7 @@ private:
   void followImages(const std::vector<vpLampRun> &runs);
 
   std::vector<bool> m_placed; // each view
-  std::vector<bool> m_known;  // each lamp whose place is believed, or was found
+  std::vector<bool> m_known;  // each lamp whose map position is a prior, or that was placed
 };
 
 END_VISP_NAMESPACE

@@ -12,7 +12,7 @@
 #include <Eigen/LU>
 #include <visp3/core/vpException.h>
 
-#include "vpDoubtedMap.h"
+#include "vpInflatedMap.h"
 #include "vpRunChecks.h"
 
 BEGIN_VISP_NAMESPACE
@@ -135,7 +135,7 @@ vpSurveyResult vpLampSurvey::solve(const std::vector<vpLampRun> &runs, const vpV
     result.bundle.refusal = swapped;
     return result;
   }
-  result.bundle = vpUnderDoubtedMap(result.bundle, bundleOf(map), runs, rig, map);
+  result.bundle = vpSolveWithInflatedMap(result.bundle, bundleOf(map), runs, rig, map);
   result.lamps = heldAgainst(map, result.bundle);
   result.bundle.refusal = vpNoMinimum(result.bundle);
   if (!result.bundle.refusal.empty()) {

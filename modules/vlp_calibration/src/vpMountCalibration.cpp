@@ -9,7 +9,7 @@
 
 #include <visp3/vlp_core/vpNumberText.h>
 
-#include "vpDoubtedMap.h"
+#include "vpInflatedMap.h"
 #include "vpRunChecks.h"
 
 BEGIN_VISP_NAMESPACE
@@ -104,7 +104,7 @@ vpBundleResult vpMountCalibration::solve(const std::vector<vpLampRun> &runs, con
     result.refusal = other;
     return result;
   }
-  result = vpUnderDoubtedMap(result, own, runs, rig, map);
+  result = vpSolveWithInflatedMap(result, own, runs, rig, map);
   // What priors hold is told, not refused.
   std::vector<std::string> open;
   for (const std::string &names : result.unseparated) {

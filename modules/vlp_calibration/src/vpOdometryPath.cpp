@@ -80,20 +80,20 @@ Curve plain(const std::vector<double> &times, const std::vector<double> &values)
 
 /*!
   Without the steps of encoders, whose whole ticks are as much in heading as an image point is off by:
-  parabolas over as long as the base moves along one (Savitzky and Golay 1964; how long, by what is usual of
+  parabolas over as long as the base moves along one (Savitzky and Golay 1964; how long, by the median of
   the residuals).
 */
 Curve smoothed(const std::vector<double> &times, const std::vector<double> &values)
 {
   Curve smooth = plain(times, values);
-  static const double usual = 1.4;                                    // times the median
+  static const double accepted = 1.4;                                 // times the median
   static const double reaches[] = {0.04, 0.06, 0.09, 0.13, 0.2, 0.3}; // s, to either side
   for (const double reach : reaches) {
     const Smoothed wider = parabolas(times, values, reach);
     std::vector<double> sorted = wider.residuals;
     std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
     for (size_t i = 0; i < times.size(); ++i) {
-      if (std::isfinite(wider.residuals[i]) && wider.residuals[i] <= usual * sorted[sorted.size() / 2]) {
+      if (std::isfinite(wider.residuals[i]) && wider.residuals[i] <= accepted * sorted[sorted.size() / 2]) {
         smooth.values[i] = wider.values[i];
         smooth.slopes[i] = wider.slopes[i];
       }

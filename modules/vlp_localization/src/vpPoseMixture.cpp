@@ -138,7 +138,7 @@ void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
   }
   m_places.erase(m_places.begin() + static_cast<long>(kept), m_places.end());
   for (size_t p = 1; p < m_places.size();) {
-    const bool same = m_places[p].filter.doubtsClaims() == likeliest().filter.doubtsClaims() &&
+    const bool same = m_places[p].filter.claimsWidened() == likeliest().filter.claimsWidened() &&
                       agree(likeliest(), m_places[p]);
     p += same ? 0 : 1;
     if (same) {
@@ -176,7 +176,7 @@ bool vpPoseMixture::lostAt(double time) const
 {
   return std::all_of(m_places.begin(), m_places.end(), [time](const vpPoseHypothesis &place) {
     vpVlpFilter there = place.filter;
-    there.rouse();
+    there.allowManoeuvre();
     there.advance(time);
     return there.state(there.pose()) == vpVlpFilter::State::lost;
   });

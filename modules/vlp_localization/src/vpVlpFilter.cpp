@@ -64,7 +64,7 @@ struct vpVlpFilter::Predicted {
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 3> byPlace; // of the lamp
   Derivative<2> H;
-  Eigen::Matrix2d ownDoubt = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
+  Eigen::Matrix2d ownCovariance = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
 };
 
 double vpVlpFilter::Innovation::distance(double tolerance) const
@@ -171,7 +171,7 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
       H.add(own + k, -byPlace.col(k).transpose());
     }
   } else {
-    predicted.ownDoubt = square(placeSigma(lamp)) * byPlace * byPlace.transpose();
+    predicted.ownCovariance = square(placeSigma(lamp)) * byPlace * byPlace.transpose();
   }
   return predicted;
 }
@@ -187,7 +187,7 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp, const P
   innovation.inFront = predicted.inFront;
   if (predicted.inFront) {
     innovation.ray = lamp.ray - predicted.ray - aside(predicted.H);
-    innovation.covariance = predicted.ownDoubt + m_noise * lamp.covariance;
+    innovation.covariance = predicted.ownCovariance + m_noise * lamp.covariance;
     const Derivative<2> &H = predicted.H;
     for (int k = 0; k < H.count; ++k) {
       const auto column = m_P.col(H.at[static_cast<size_t>(k)]);
@@ -373,7 +373,7 @@ void vpVlpFilter::tellMarked(vpVlpFix &fix) const
 vpVlpFix vpVlpFilter::fixAt(double time) const
 {
   vpVlpFilter there = *this;
-  there.rouse();
+  there.allowManoeuvre();
   there.advance(time);
   return there.fixOf(x);
 }

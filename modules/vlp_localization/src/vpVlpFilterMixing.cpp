@@ -20,13 +20,13 @@ BEGIN_VISP_NAMESPACE
 void vpVlpFilter::weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated)
 {
   static const double calm = 0.03, noisy = 0.3; // share of the accelerations; of an innovation's variance
-  static const double believed = 10; // points, that what the first of them scatter by weighs as much as
+  static const double priorPoints = 10;         // that the stated variance weighs as much as
   static const double slowest = 0.02, outlying = 9, least = 0.25, most = 9;
-  if (m_unrest > calm || m_noise * stated.trace() < noisy * seen.covariance.trace()) {
+  if (m_manoeuvreShare > calm || m_noise * stated.trace() < noisy * seen.covariance.trace()) {
     return;
   }
   const double excess = 0.5 * std::min(seen.distance(0), outlying) - 1;
-  const double gain = std::max(slowest, 1 / (believed + ++m_weighed));
+  const double gain = std::max(slowest, 1 / (priorPoints + ++m_weighed));
   m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
 }
 

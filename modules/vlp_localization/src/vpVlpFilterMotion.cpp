@@ -92,14 +92,14 @@ void vpVlpFilter::move(double dt, bool accelerates)
 
   const double t = std::abs(dt);
   static const double least = 0.01; // of the drift: lamps' outlines are not wrong anew in every frame
-  m_P(z, z) += square(std::max(m_unrest, least) * drift) * t;
+  m_P(z, z) += square(std::max(m_manoeuvreShare, least) * drift) * t;
   if (freeAttitude) {
     m_P(roll, roll) += square(tiltDrift) * t;
     m_P(pitch, pitch) += square(tiltDrift) * t;
   }
   if (accelerates) {
     // Accelerations along x and y of b are alike, so that the heading does not matter.
-    const double a = square(m_unrest * acceleration), b = square(m_unrest * turnAcceleration);
+    const double a = square(m_manoeuvreShare * acceleration), b = square(m_manoeuvreShare * turnAcceleration);
     const double sign = dt < 0 ? -1 : 1;
     const Eigen::Matrix2d velocityPlace = sign * 0.5 * a * t * t * R.toRotationMatrix();
     m_P.block<2, 2>(x, x).diagonal().array() += a * t * t * t / 3;
@@ -133,9 +133,9 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   H.add(turnScale, m_x(w) * turning);
   H.add(turnBias, turning);
   // An error that changes from sample to sample averages out over samples, however long they are.
-  static const double usual = 0.02; // s
+  static const double nominal = 0.02; // s
   const double dt = sample.timestamp - before.timestamp;
-  const double share = odometryShare * std::sqrt(usual / std::max(dt, 1e-3));
+  const double share = odometryShare * std::sqrt(nominal / std::max(dt, 1e-3));
   // Where speeds change from sample to sample they do so within one.
   static const double within = 0.3; // share of the change, standard deviation
   Eigen::Matrix3d R = Eigen::Matrix3d::Zero();

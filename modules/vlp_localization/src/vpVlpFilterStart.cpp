@@ -51,17 +51,19 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   sigma.head<3>().setConstant(startPlace);
   sigma(yaw) = startTurn;
   sigma.segment<2>(roll) =
-      freeAttitude ? Eigen::Vector2d(startTurn, startTurn)
-                   : Eigen::Vector2d(m_rig.rotationSigma.head<2>().array().square() + square(m_tiltDoubt))
-                         .cwiseSqrt()
-                         .eval();
+      freeAttitude
+          ? Eigen::Vector2d(startTurn, startTurn)
+          : Eigen::Vector2d(m_rig.rotationSigma.head<2>().array().square() + square(m_extraTiltSigma))
+                .cwiseSqrt()
+                .eval();
   sigma(speedScale) = odometryScale;
   sigma(turnScale) = odometryTurnScale;
   sigma(turnBias) = odometryTurnBias;
   sigma(wheels) = odometryHeading;
   sigma.segment<3>(mount) = m_rig.translationSigma;
   sigma(mount + 3) = m_rig.rotationSigma.z();
-  const bool exact = m_tiltDoubt == 0 && m_rig.rotationSigma.isZero(0) && m_rig.translationSigma.isZero(0);
+  const bool exact =
+      m_extraTiltSigma == 0 && m_rig.rotationSigma.isZero(0) && m_rig.translationSigma.isZero(0);
   const double point = m_rig.principalPointSigma ? *m_rig.principalPointSigma / m_rig.camera.get_px()
                                                  : (exact ? 0 : principalPoint);
   sigma.segment<3>(lens) << point, point, m_rig.focalLengthSigma.value_or(exact ? 0 : focalLength);
@@ -70,7 +72,7 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   for (size_t k = 0; k < m_lamps.size(); ++k) {
     m_P.diagonal().segment<3>(lamps + 3 * static_cast<Eigen::Index>(k)).setConstant(square(m_placeSigmas[k]));
   }
-  m_unrest = startShare;
+  m_manoeuvreShare = startShare;
   for (int i : {vx, vy, w}) {
     m_P(i, i) = square(i == w ? startTurnRate : startVelocity);
   }
@@ -166,26 +168,26 @@ void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
   static const double placeSigma = 0.003, turnSigma = 0.005; // m, rad
   const double place = std::sqrt(std::max(before.covariance(0, 0), before.covariance(1, 1))) + placeSigma,
                turn = std::sqrt(before.covariance(5, 5)) + turnSigma;
-  const auto believe = [&](Index i, double meanVelocity, double error, double random, double usual) {
+  const auto setVelocity = [&](Index i, double meanVelocity, double error, double random, double prior) {
     // At the end of a way a velocity that walks at random is off its mean by a third of what it walks.
-    const double doubt = square(error / since) + square(random) * since / 3,
-                 share = square(usual) / (square(usual) + doubt);
+    const double variance = square(error / since) + square(random) * since / 3,
+                 share = square(prior) / (square(prior) + variance);
     m_x(i) = share * meanVelocity;
     m_P.row(i).setZero();
     m_P.col(i).setZero();
-    m_P(i, i) = share * doubt;
+    m_P(i, i) = share * variance;
   };
-  believe(vx, mean.x(), place, acceleration, startVelocity);
-  believe(vy, mean.y(), place, acceleration, startVelocity);
-  believe(w, turned / since, turn, turnAcceleration, startTurnRate);
+  setVelocity(vx, mean.x(), place, acceleration, startVelocity);
+  setVelocity(vy, mean.y(), place, acceleration, startVelocity);
+  setVelocity(w, turned / since, turn, turnAcceleration, startTurnRate);
   m_startX = m_x;
   m_startP = m_P;
 }
 
-void vpVlpFilter::doubtClaims()
+void vpVlpFilter::widenClaims()
 {
-  m_tiltDoubt = std::max(claimedTilt, 2 * m_tiltDoubt);
-  m_placeDoubt = std::max(claimedPlace, 2 * m_placeDoubt);
+  m_extraTiltSigma = std::max(claimedTilt, 2 * m_extraTiltSigma);
+  m_extraPlaceSigma = std::max(claimedPlace, 2 * m_extraPlaceSigma);
 }
 
 END_VISP_NAMESPACE

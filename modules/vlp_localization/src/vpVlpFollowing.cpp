@@ -66,7 +66,7 @@ vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations,
 
 /*!
   A place that begins with a frame. \param put The robot was put there, else it has come from the last pose.
-  \param wider Times that camera and map are taken for less exact than they say: vpVlpFilter::doubtClaims().
+  \param wider Times that camera and map are taken for less exact than they say: vpVlpFilter::widenClaims().
 */
 vpPoseHypothesis vpVlpLocalizer::placeAt(const vpVlpFix &fix, const vpLampFrame &frame, bool put,
                                          int wider) const
@@ -74,7 +74,7 @@ vpPoseHypothesis vpVlpLocalizer::placeAt(const vpVlpFix &fix, const vpLampFrame 
   vpVlpFilter start = filter;
   start.freeAttitude = manyLamps.attitude == vpManyLampSolver::Attitude::free;
   for (int step = 0; step < wider; ++step) {
-    start.doubtClaims();
+    start.widenClaims();
   }
   vpLampHistory lamps = m_places->lamps();
   lamps.mapTolerance = mapTolerance;

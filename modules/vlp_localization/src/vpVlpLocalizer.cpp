@@ -122,11 +122,11 @@ void vpVlpLocalizer::locate(vpVlpLocation &location)
   // stripes do not: lamps that share an identifier, a lamp and its reflection.
   std::vector<size_t> &usable = m_scratch->usable;
   vpLampConsensus::usable(location.observations, usable);
-  std::string doubt;
+  std::string refusal;
   if (!namedApart(location.observations, usable)) {
     const vpLampMatch match = matchByPlace(location.observations, usable, location.timestamp);
     nameByPlace(match, m_map, location.observations, usable);
-    doubt = match.refusal;
+    refusal = match.refusal;
   }
 
   // Each ray corrects the pose that the filter carries, or, at first, two or all that agree with each other
@@ -137,8 +137,8 @@ void vpVlpLocalizer::locate(vpVlpLocation &location)
   } else {
     begin(location, usable);
   }
-  if (!location.fix.valid && usable.size() < 2 && !doubt.empty()) {
-    location.fix.refusal = doubt;
+  if (!location.fix.valid && usable.size() < 2 && !refusal.empty()) {
+    location.fix.refusal = refusal;
   }
   if (location.fix.valid && !location.fix.ambiguous) {
     if (!m_lastPose) {

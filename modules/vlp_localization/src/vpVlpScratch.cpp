@@ -14,7 +14,7 @@ BEGIN_VISP_NAMESPACE
 const vpVlpFilter &vpVlpLocalizer::Scratch::predicted(const vpVlpFilter &filter, double time)
 {
   there = filter;
-  there.rouse();
+  there.allowManoeuvre();
   there.advance(time);
   return there;
 }

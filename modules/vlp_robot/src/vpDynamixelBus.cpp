@@ -70,7 +70,7 @@ std::string meaning(std::uint8_t error)
 
 vpDynamixelBus::vpDynamixelBus(std::unique_ptr<vpByteTransport> transport) : m_transport(std::move(transport))
 {
-  m_doubtUntil = -std::numeric_limits<double>::infinity();
+  m_staleUntil = -std::numeric_limits<double>::infinity();
 }
 
 vpDynamixelBus::Identity vpDynamixelBus::ping(std::uint8_t id, double deadline)
@@ -113,7 +113,7 @@ vpDynamixelPacket vpDynamixelBus::transact(const vpDynamixelPacket &request, siz
   const double began = now();
   int corrupted = 0, silent = 0;
   do {
-    if (corrupted + silent > 0 || doubtful()) {
+    if (corrupted + silent > 0 || answerMayBeStale()) {
       m_transport->discard();
     }
     vpDynamixelPacket answer;
@@ -165,11 +165,11 @@ vpDynamixelBus::Outcome vpDynamixelBus::attempt(const std::vector<std::uint8_t> 
     break;
   case Outcome::corrupted: // this attempt's answer, unless that of another one may have come before it
     ++m_statistics.crcErrors;
-    m_doubtUntil = doubtful() ? sent + lateAnswerTime : m_doubtUntil;
+    m_staleUntil = answerMayBeStale() ? sent + lateAnswerTime : m_staleUntil;
     break;
   case Outcome::silent:
     ++m_statistics.timeouts;
-    m_doubtUntil = sent + lateAnswerTime;
+    m_staleUntil = sent + lateAnswerTime;
     break;
   }
   return outcome;
@@ -202,16 +202,16 @@ vpDynamixelBus::Outcome vpDynamixelBus::await(std::uint8_t id, size_t parameters
   }
 }
 
-bool vpDynamixelBus::doubtful() const
+bool vpDynamixelBus::answerMayBeStale() const
 {
-  return now() < m_doubtUntil;
+  return now() < m_staleUntil;
 }
 
 void vpDynamixelBus::settle()
 {
   std::array<std::uint8_t, 512> bytes;
-  while (doubtful()) {
-    m_transport->read(bytes.data(), bytes.size(), m_doubtUntil);
+  while (answerMayBeStale()) {
+    m_transport->read(bytes.data(), bytes.size(), m_staleUntil);
   }
 }
 
@@ -219,7 +219,7 @@ void vpDynamixelBus::reopen()
 {
   m_transport->reopen();
   m_parser.reset();
-  m_doubtUntil = -std::numeric_limits<double>::infinity();
+  m_staleUntil = -std::numeric_limits<double>::infinity();
 }
 
 vpDynamixelStatistics vpDynamixelBus::statistics() const

@@ -276,11 +276,11 @@ void vpRobotTurtleBot3::tell(const vpBaseVelocity &velocity, bool heartbeat, dou
       write(Table::heartbeat, m_heartbeat, deadline);
     }
     m_bus.write(Table::id, command.address(), command.bytes(), deadline);
-    if (!m_bus.doubtful() || (m_heartbeatKnown && holdsCommand(readTable(deadline)))) {
+    if (!m_bus.answerMayBeStale() || (m_heartbeatKnown && holdsCommand(readTable(deadline)))) {
       return;
     }
   } while (now() < deadline);
-  throw vpException(vpException::ioError, m_bus.name() + ": command not confirmed beyond doubt, expected the "
+  throw vpException(vpException::ioError, m_bus.name() + ": command not confirmed for certain, expected the "
                                                          "board to hold it at the deadline");
 }
 
@@ -305,7 +305,7 @@ vpControlBlock vpRobotTurtleBot3::readCurrentTable(double deadline)
     if (holdsCommand(table) && plausible(table)) {
       return table;
     }
-    contradictions += !m_bus.doubtful();
+    contradictions += !m_bus.answerMayBeStale();
   }
   throw vpException(
       vpException::ioError,

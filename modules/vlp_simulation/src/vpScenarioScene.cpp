@@ -68,15 +68,15 @@ std::vector<std::pair<double, double>> readTimes(const vpYamlNode &node, const s
 //! How all lamps shine, where nothing else is said of one.
 vpSimulatedLamp readLight(const vpYamlNode &top, vpSimulatedScene &scene)
 {
-  vpSimulatedLamp usual;
+  vpSimulatedLamp common;
   if (!top.has("light")) {
-    return usual;
+    return common;
   }
   const vpYamlNode node = top.mapping("light");
-  usual.level = levelOf(node, "lamp_level", usual.level);
-  usual.rim = shareOf(node, "rim", usual.rim);
-  usual.emission = vpScenarioYaml::readEmission(node, usual.emission);
-  usual.halfPower = halfPowerOf(node, usual.halfPower);
+  common.level = levelOf(node, "lamp_level", common.level);
+  common.rim = shareOf(node, "rim", common.rim);
+  common.emission = vpScenarioYaml::readEmission(node, common.emission);
+  common.halfPower = halfPowerOf(node, common.halfPower);
   scene.ambient = levelOf(node, "ambient", scene.ambient);
   if (node.has("ceiling")) {
     const vpYamlNode ceiling = node.mapping("ceiling");
@@ -85,7 +85,7 @@ vpSimulatedLamp readLight(const vpYamlNode &top, vpSimulatedScene &scene)
     ceiling.finish();
   }
   node.finish();
-  return usual;
+  return common;
 }
 
 void readLamp(const vpYamlNode &node, std::vector<vpScenario::Lamp> &lamps)
@@ -112,11 +112,11 @@ void readLamp(const vpYamlNode &node, std::vector<vpScenario::Lamp> &lamps)
   node.finish();
 }
 
-void readLamps(const std::optional<vpYamlNode> &truth, const vpSimulatedLamp &usual, vpScenario &scenario)
+void readLamps(const std::optional<vpYamlNode> &truth, const vpSimulatedLamp &common, vpScenario &scenario)
 {
   auto add = [&](const vpLamp &lamp) {
     scenario.lamps.emplace_back();
-    scenario.lamps.back().simulated = usual;
+    scenario.lamps.back().simulated = common;
     scenario.lamps.back().simulated.lamp = lamp;
   };
   for (const vpLamp &lamp : scenario.map.lamps) {
@@ -127,7 +127,7 @@ void readLamps(const std::optional<vpYamlNode> &truth, const vpSimulatedLamp &us
   }
   if (truth->has("more_lamps")) {
     for (const vpYamlNode &node : truth->mappings("more_lamps")) {
-      const vpEmission emission = vpScenarioYaml::readEmission(node, usual.emission);
+      const vpEmission emission = vpScenarioYaml::readEmission(node, common.emission);
       const vpLamp lamp = vpLamp::read(node);
       for (const vpScenario::Lamp &other : scenario.lamps) {
         if (other.simulated.lamp.id == lamp.id) {
@@ -203,8 +203,8 @@ vpSimulatedPerson readPerson(const vpYamlNode &node)
 void vpScenarioYaml::readScene(const vpYamlNode &top, const std::optional<vpYamlNode> &truth,
                                vpScenario &scenario)
 {
-  const vpSimulatedLamp usual = readLight(top, scenario.scene);
-  readLamps(truth, usual, scenario);
+  const vpSimulatedLamp common = readLight(top, scenario.scene);
+  readLamps(truth, common, scenario);
   if (truth) {
     if (truth->has("second_images")) {
       for (const vpYamlNode &node : truth->mappings("second_images")) {

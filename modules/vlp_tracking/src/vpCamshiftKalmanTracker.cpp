@@ -11,10 +11,10 @@
 
 #include <visp3/core/vpException.h>
 
+#include "vpExpectedAppearance.h"
 #include "vpGrownSearch.h"
 #include "vpPositionFilter.h"
 #include "vpTargetModel.h"
-#include "vpUsualSight.h"
 #include "vpWindowSums.h"
 
 BEGIN_VISP_NAMESPACE
@@ -52,7 +52,7 @@ struct vpCamshiftKalmanTracker::Candidate : vpTargetCandidate {
 
 struct vpCamshiftKalmanTracker::Impl {
   vpTargetModel model;
-  vpUsualSight usual;
+  vpExpectedAppearance appearance;
   vpPositionFilter filter;
   vpWindowSums sums;
   vpGrownSearch grown;
@@ -63,7 +63,7 @@ struct vpCamshiftKalmanTracker::Impl {
   double offsetU = 0, offsetV = 0; // window sizes, its middle from that of what tells the target
   double acceleration = 0;         // px/frame^2, standard deviation
   int missed = 0;                  // frames since it was seen
-  int trustedFrames = 0;
+  int refreshableFrames = 0;
   bool predicted = false; // since it began
 
   double size() const { return std::sqrt(width * height); }
@@ -127,7 +127,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::beginWith(const vpImage<Pixel
   Candidate given = rest;
   given.shares = own.sums.histogram(I, binOf, window);
   given.mass = own.model.mass(given.shares);
-  own.usual.begin(given);
+  own.appearance.begin(given);
   own.acceleration = steadiness * own.size();
   own.filter.init(middle, noiseFloor, startVelocity * own.size());
   return {window, own.model.bhattacharyya(given.shares), true};
@@ -247,13 +247,13 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::bestOfGrownWindow(co
                                                                               const vpRect &window)
 {
   static const double neighbourhood = 3; // windows on a side: what the eight neighbours cover
-  static const double doubt = 3;         // standard deviations of the prediction
+  static const double sigmas = 3;        // standard deviations of the prediction
   static const int places = 3;
   const double growth = std::pow(searchGrowth, m_impl->missed);
   const double width =
-      neighbourhood * growth * window.getWidth() + 2 * doubt * m_impl->filter.predictedSigma();
+      neighbourhood * growth * window.getWidth() + 2 * sigmas * m_impl->filter.predictedSigma();
   const double height =
-      neighbourhood * growth * window.getHeight() + 2 * doubt * m_impl->filter.predictedSigma();
+      neighbourhood * growth * window.getHeight() + 2 * sigmas * m_impl->filter.predictedSigma();
   vpRect region(0, 0, std::min(width, 3.0 * I.getWidth()), std::min(height, 3.0 * I.getHeight()));
   region.moveCenter(window.getCenter());
   Candidate best;
@@ -269,17 +269,17 @@ vpCamshiftKalmanTracker::Candidate vpCamshiftKalmanTracker::bestOfGrownWindow(co
 }
 
 /*!
-  What a sighting that is not as usual may be off by, its noise covers. An innovation beyond that, and beyond
-  what the prediction's own doubt covers, is the target's: it changes its velocity, and the prediction is made
-  again with as much process noise, which then calms down slowly. So a target that goes straight is not pulled
-  off by what hides half of it, and one that turns is followed.
+  The measurement noise covers what a sighting that is not as expected may be off by. An innovation beyond
+  that, and beyond the prediction's own sigma, is the target's: it changes its velocity, and the prediction is
+  made again with as much process noise, which then calms down slowly. So a target that goes straight is not
+  pulled off by what hides half of it, and one that turns is followed.
 */
 void vpCamshiftKalmanTracker::correctBy(const Candidate &seen)
 {
   Impl &own = *m_impl;
   const vpImagePoint measured = seen.window.getCenter();
   const double innovation = vpImagePoint::distance(measured, own.filter.predicted());
-  double sigma = measurementSigma(std::max(own.usual.trust(seen), threshold)) / seen.visible;
+  double sigma = measurementSigma(std::max(own.appearance.plausibility(seen), threshold)) / seen.visible;
   if (innovation > own.size()) { // farther than anything hidden could move the middle of the rest
     sigma = std::min(sigma, 0.25 * own.size());
   }
@@ -312,7 +312,8 @@ void vpCamshiftKalmanTracker::adaptSize(const Candidate &seen)
   Impl &own = *m_impl;
   const double pulled = vpImagePoint::distance(seen.window.getCenter(), own.filter.predicted());
   const bool pulls = pulled > 0.05 * own.size() + 2 * own.filter.predictedSigma();
-  if (seen.visible < nearlyWhole || !(own.usual.asUsual(seen) || (own.usual.changedAlike(seen) && !pulls))) {
+  if (seen.visible < nearlyWhole ||
+      !(own.appearance.asExpected(seen) || (own.appearance.changedAlike(seen) && !pulls))) {
     return;
   }
   auto adapted = [this](double length, double growth, double first) {
@@ -320,22 +321,23 @@ void vpCamshiftKalmanTracker::adaptSize(const Candidate &seen)
     const double bounded = std::clamp(wanted, 1 / (1 + maxSizeChange), 1 + maxSizeChange);
     return std::clamp(length * bounded, std::max(4.0, first / most), first * most);
   };
-  own.width = adapted(own.width, own.usual.growthAcross(seen), own.firstWidth);
-  own.height = adapted(own.height, own.usual.growthDown(seen), own.firstHeight);
+  own.width = adapted(own.width, own.appearance.growthAcross(seen), own.firstWidth);
+  own.height = adapted(own.height, own.appearance.growthDown(seen), own.firstHeight);
 }
 
 template <class Pixel>
 void vpCamshiftKalmanTracker::refreshModel(const vpImage<Pixel> &I, const Candidate &seen)
 {
   Impl &own = *m_impl;
-  if (seen.coefficient < trusted || own.usual.trust(seen) < trusted || seen.visible < nearlyWhole) {
+  if (seen.coefficient < refreshThreshold || own.appearance.plausibility(seen) < refreshThreshold ||
+      seen.visible < nearlyWhole) {
     return;
   }
-  own.usual.learn(seen);
-  if (!own.usual.asUsual(seen)) {
+  own.appearance.learn(seen);
+  if (!own.appearance.asExpected(seen)) {
     return;
   }
-  if (++own.trustedFrames % std::max(1, refreshInterval) == 0) {
+  if (++own.refreshableFrames % std::max(1, refreshInterval) == 0) {
     own.model.refresh(seen.shares,
                       own.sums.histogramAround(I, binsOf(I), seen.window, scaled(seen.window, surroundings)),
                       refreshRate);

@@ -23,20 +23,20 @@ using vpLampBoxes::tells;
 using vpLampBoxes::widened;
 
 //! Whether the lamp has its middle about there, and is as it was.
-bool vpLampTracker::glanceAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place)
+bool vpLampTracker::reacquireAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place)
 {
   if (!track.sure) {
     return false;
   }
   track.seen = track.known;
   track.seen.outline.centre = {place.get_u(), place.get_v()};
-  track.found = detector.glance(I, track.seen);
+  track.found = detector.reacquire(I, track.seen);
   return track.found;
 }
 
 //! The same in the middle of the nearest window in which a lamp is expected.
-bool vpLampTracker::glanceAsExpected(Track &track, const vpImage<unsigned char> &I,
-                                     const std::vector<vpRect> &expected)
+bool vpLampTracker::reacquireAsExpected(Track &track, const vpImage<unsigned char> &I,
+                                        const std::vector<vpRect> &expected)
 {
   static const double farthest = 1; // of the lamp's extent, since the frame before
   const vpImagePoint before = track.place.getCenter();
@@ -45,18 +45,18 @@ bool vpLampTracker::glanceAsExpected(Track &track, const vpImage<unsigned char> 
                                         [&way](const auto &a, const auto &b) { return way(a) < way(b); });
   return nearest != expected.end() &&
          way(*nearest) < farthest * std::max(track.place.getWidth(), track.place.getHeight()) &&
-         glanceAt(track, I, nearest->getCenter());
+         reacquireAt(track, I, nearest->getCenter());
 }
 
 //! The lamps that are where their targets are, and as they were.
-void vpLampTracker::glance(const vpImage<unsigned char> &I)
+void vpLampTracker::reacquire(const vpImage<unsigned char> &I)
 {
   for (size_t t = 0; t < m_tracks.size(); ++t) {
     Track &track = m_tracks[t];
     if (track.astray) {
       continue;
     }
-    if (track.found || glanceAt(track, I, track.target->center())) {
+    if (track.found || reacquireAt(track, I, track.target->center())) {
       track.taken = true;
       addObservation(track.seen);
       m_trackOf.push_back(static_cast<int>(t));
@@ -88,7 +88,7 @@ void vpLampTracker::glance(const vpImage<unsigned char> &I)
   }
 }
 
-//! What glances left open: lamps that were not found, and other windows that show more than lamps that were.
+//! What reacquisition left open: lamps that were not found, and windows that show more than those that were.
 void vpLampTracker::search(const vpVlpFrame &frame)
 {
   static const double halo = 0.1, beyond = 4; // of a lamp's extent; px
@@ -231,7 +231,7 @@ void vpLampTracker::setWindows(const vpVlpFrame &frame, const std::vector<vpRect
     if (track.astray) {
       track.window = track.place;
     } else {
-      const bool there = m_inSight >= needed && glanceAsExpected(track, frame.I, expected) &&
+      const bool there = m_inSight >= needed && reacquireAsExpected(track, frame.I, expected) &&
                          track.target->goOn(boxOf(track.seen.outline));
       if (!there) {
         track.target->track(frame.I);

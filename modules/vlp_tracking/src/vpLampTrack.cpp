@@ -26,7 +26,7 @@ void vpLampTracker::Track::remember(const vpImage<unsigned char> &I)
 bool vpLampTracker::Track::isElsewhere(const vpLampObservation &lamp) const
 {
   static const double far = 1, farthest = 1.4; // of its size; of one that is no plain wave
-  static const double vague = 5, off = 3;      // times the doubt of what is known; sigma
+  static const double vague = 5, off = 3;      // times the sigma of what is known; sigma
   const vpStripeFeatures &now = lamp.features, &past = evidence.features();
   if (!vpLedIdEvidence::tells(now) || !vpLedIdEvidence::tells(past) ||
       now.frequencySigma <= vague * past.frequencySigma) {
@@ -39,7 +39,7 @@ bool vpLampTracker::Track::isElsewhere(const vpLampObservation &lamp) const
          (pwm && std::abs(now.frequency - past.frequency) > off * now.frequencySigma);
 }
 
-//! A lamp that is recognised beyond doubt may be found by a glance in the next frame.
+//! A lamp that is recognised for certain may be reacquired in the next frame.
 void vpLampTracker::Track::learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence)
 {
   const bool decided = lamp.candidates.size() <= 1 && lamp.confidence >= minConfidence;

@@ -25,8 +25,8 @@ struct vpLampTracker::Track {
   bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
   std::vector<unsigned char> look; // pixels of the place, line by line
   vpLampObservation known;         // as it was seen last,
-  bool sure = false;               // and whether a glance may find it again
-  vpLampObservation seen;          // by a glance,
+  bool sure = false;               // and whether it may be reacquired
+  vpLampObservation seen;          // as reacquired,
   bool found = false;              // where it was expected
 
   //! Whether a region tells too little of its own to be the same lamp, far from where that blinked last or

@@ -73,7 +73,7 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   clearObservations();
   m_trackOf.clear();
   if (m_inSight >= needed) {
-    glance(frame.I);
+    reacquire(frame.I);
     moveSteady(frame.timestamp);
     search(frame);
   }
@@ -82,18 +82,18 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   }
 
   // Which region is which lamp; what all its frames say of it; what is new.
-  const size_t glanced = m_trackOf.size();
+  const size_t reacquired = m_trackOf.size();
   assign();
   for (size_t i = 0; i < m_observations.size(); ++i) {
-    if (i < glanced) {
-      followGlanced(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
+    if (i < reacquired) {
+      followReacquired(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
     } else if (m_trackOf[i] >= 0) {
       follow(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
     } else if (tells(m_observations[i])) {
       bear(m_observations[i], frame);
     }
   }
-  if (m_observations.size() > glanced) { // else all is known as it is
+  if (m_observations.size() > reacquired) { // else all is known as it is
     detector.recognizer.recognize(m_observations);
   }
   for (size_t i = 0; i < m_observations.size(); ++i) {
@@ -164,7 +164,7 @@ void vpLampTracker::assign()
   for (size_t i = 0; i < m_observations.size(); ++i) {
     const vpLampObservation &seen = m_observations[i];
     if (i < m_trackOf.size()) {
-      continue; // found by a glance
+      continue; // reacquired
     }
     if (!blinks(seen) && seen.features.signal != vpStripeFeatures::Signal::unmodulated) {
       continue;
@@ -200,8 +200,8 @@ void vpLampTracker::assign()
   }
 }
 
-//! What a glance found is as it was.
-void vpLampTracker::followGlanced(Track &track, vpLampObservation &seen, const vpVlpFrame &frame)
+//! A lamp that was reacquired is as it was.
+void vpLampTracker::followReacquired(Track &track, vpLampObservation &seen, const vpVlpFrame &frame)
 {
   track.seenLast = frame.timestamp;
   track.told = boxOf(seen.outline);

@@ -14,7 +14,7 @@ BEGIN_VISP_NAMESPACE
 //! What vpLampTracker works on within a frame, kept so that the next one takes no memory.
 struct vpLampTracker::Scratch {
   std::vector<vpLampObservation> spare; // of frames before
-  std::vector<char> another;            // glance(): of each observation, whether it is another lamp's
+  std::vector<char> another;            // reacquire(): of each observation, whether it is another lamp's
   std::vector<vpRect> known, knownOrSteady, open; // search(), px
 };
 

@@ -225,8 +225,8 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
   if (!m_covariance.allFinite() || m_covariance.diagonal().minCoeff() < 0) {
     return false;
   }
-  const double doubt = std::sqrt(m_model.outline(m_covariance).centreCovariance.trace());
-  return doubt < 0.3 * radius;
+  const double sigma = std::sqrt(m_model.outline(m_covariance).centreCovariance.trace());
+  return sigma < 0.3 * radius;
 }
 
 template <class Model>

@@ -72,7 +72,7 @@ void judge(std::vector<vpEightLines<9>> &lines);
 /*!
   Sets the weights: those of Tukey over an end's variance, which is that of its own residuals or \e noise,
   whichever is more; an end that would move the edge far beyond what the others want is let go of. An end is
-  no outlier for being noisy: its own doubt widens the limit.
+  no outlier for being noisy: its own variance widens the limit.
   \param scale px, of offsets.
 */
 void weigh(std::vector<vpEightLines<6>> &lines, double noise, double scale, Sums<6> &sums);

@@ -56,10 +56,11 @@ vpOutlineFit likelier(const vpEdgeFit<vpEllipseModel> &ellipse, const vpEdgeFit<
   const double gain = pixels * std::log(ratio) + ellipse.prior() - sides.prior() - penalty;
   vpOutlineFit best = gain > 0 ? sides.result() : ellipse.result();
   const vpOutlineFit other = gain > 0 ? ellipse.result() : sides.result();
-  const double doubt = 1 / (1 + std::exp(0.5 * std::abs(gain)));
+  const double otherProbability = 1 / (1 + std::exp(0.5 * std::abs(gain)));
   const Eigen::Vector2d apart = other.outline.centre - best.outline.centre;
-  best.outline.otherShape = doubt;
-  best.outline.centreCovariance += doubt * (other.outline.centreCovariance + apart * apart.transpose());
+  best.outline.otherShape = otherProbability;
+  best.outline.centreCovariance +=
+      otherProbability * (other.outline.centreCovariance + apart * apart.transpose());
   return best;
 }
 
@@ -139,8 +140,8 @@ bool isRound(const std::vector<cv::Point2f> &ends, const vpLedRoi &roi)
   The lamp alone, where its region holds dimmer light beside it as well, its ghost in a pane or a rim that it
   lights, whose edges an ellipse about both takes for the lamp's. \param evenness Of that ellipse; 0: none.
 */
-std::optional<vpOutlineFit> withoutCompanion(const vpEdgeFitPicture &picture, const vpLedRoi &roi,
-                                             double shapeSigma, int maxIterations, double evenness)
+std::optional<vpOutlineFit> withoutGhost(const vpEdgeFitPicture &picture, const vpLedRoi &roi,
+                                         double shapeSigma, int maxIterations, double evenness)
 {
   static const double more = 0.2, nearlyAlone = 0.7; // evenness
   static const double nearlyAll = 0.93;              // of the ends
@@ -170,21 +171,21 @@ std::optional<vpOutlineFit> withoutCompanion(const vpEdgeFitPicture &picture, co
   to one side of an uneven emitter more than to the other. All of the growth may lie within the pixels that
   the edge is fitted to.
 */
-void addGrowthDoubt(vpOutlineFit &fit, double evenness)
+void addGrowthVariance(vpOutlineFit &fit, double evenness)
 {
   const double reach = std::max(4.0, 3 * fit.blur + 2); // px
-  const double doubt = fit.blur * fit.blur * std::max(0.0, 1 / evenness - 1) / reach;
-  fit.outline.centreCovariance += doubt * doubt * Eigen::Matrix2d::Identity();
+  const double sigma = fit.blur * fit.blur * std::max(0.0, 1 / evenness - 1) / reach;
+  fit.outline.centreCovariance += sigma * sigma * Eigen::Matrix2d::Identity();
 }
 
 //! Where edges are uneven and leave much of the light about them unexplained, some are not the lamp's.
-void addCompanionDoubt(vpLampOutline &ellipse, double misfit, double light)
+void addGhostVariance(vpLampOutline &ellipse, double misfit, double light)
 {
-  static const double usual = 0.03; // share of the light
+  static const double normal = 0.03; // share of the light
   const double unexplained = std::sqrt(misfit) / std::max(light, 1.0);
-  if (unexplained > usual) {
-    const double doubt = 0.5 * ellipse.diameter() * unexplained;
-    ellipse.centreCovariance += doubt * doubt * Eigen::Matrix2d::Identity();
+  if (unexplained > normal) {
+    const double sigma = 0.5 * ellipse.diameter() * unexplained;
+    ellipse.centreCovariance += sigma * sigma * Eigen::Matrix2d::Identity();
   }
 }
 
@@ -271,7 +272,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   static const double alone = 0.8; // evenness of a lamp without other light beside it
   const double evenness = isEllipse ? ellipse.evenness() : 0;
   if (evenness < alone) {
-    if (const auto lamp = withoutCompanion(picture, roi, shapeSigma, maxIterations, evenness)) {
+    if (const auto lamp = withoutGhost(picture, roi, shapeSigma, maxIterations, evenness)) {
       return *lamp;
     }
   }
@@ -318,10 +319,10 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   if (cut && (!even || (sided && !showsSides(best.outline, lines.size())))) {
     best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
   } else if (evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
-    addCompanionDoubt(best.outline, ellipse.misfit(), brightestOf(lines, roi));
+    addGhostVariance(best.outline, ellipse.misfit(), brightestOf(lines, roi));
   }
   if (sound && best.outline.shape != vpLampOutline::Shape::region) {
-    addGrowthDoubt(best, edges);
+    addGrowthVariance(best, edges);
   }
   if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
     vpRimFit::addHiddenSides(best.outline, vpChordShape::longestGap(roi));

@@ -100,8 +100,8 @@ cv::Rect withNextStripes(const vpLedRoi &roi)
 }
 
 /*!
-  Says of a level's stripes in which of them nothing is looked for at higher levels: those of lamps beyond
-  doubt. One beside a region that is no lamp, as the ceiling, may lack stripes that run together with that.
+  Says of a level's stripes in which of them nothing is looked for at higher levels: those of lamps for
+  certain. One beside a region that is no lamp, as the ceiling, may lack stripes that run together with that.
   \param begun The level's first node of the tree.
 */
 void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,

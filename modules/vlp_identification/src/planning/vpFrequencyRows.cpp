@@ -54,8 +54,8 @@ vpFrequencyRows::Row vpFrequencyRows::rowOf(const vpLedIdPlanner &planner, doubl
   Row row{duty, {}};
   const double highest = std::min(m_highest, std::min(duty, 1 - duty) / planner.prediction.exposure());
   const double step = planner.frequencyStep;
-  static const double rounding = 1e-9, cell = 5; // Hz, within which the shape's doubt changes little
-  vpStripeDoubt below = planner.prediction.shapeSigma(vpPwmLamp(m_lowest, duty), lines), above = below;
+  static const double rounding = 1e-9, cell = 5; // Hz, within which the shape's sigma changes little
+  vpStripeUncertainty below = planner.prediction.shapeSigma(vpPwmLamp(m_lowest, duty), lines), above = below;
   double end = m_lowest; // of the cell, at which above is
   for (double n = std::ceil(m_lowest / step - rounding); n * step <= highest * (1 + rounding); ++n) {
     while (end < n * step) {
@@ -63,16 +63,16 @@ vpFrequencyRows::Row vpFrequencyRows::rowOf(const vpLedIdPlanner &planner, doubl
       below = above;
       above = planner.prediction.shapeSigma(vpPwmLamp(end, duty), lines);
     }
-    const vpStripeDoubt doubt = planner.prediction.together(vpPwmLamp(n * step, duty), lines, 0,
-                                                            below.duty > above.duty ? below : above);
-    row.candidates.push_back({n * step, doubt.frequency, doubt.duty});
+    const vpStripeUncertainty sigma = planner.prediction.together(vpPwmLamp(n * step, duty), lines, 0,
+                                                                  below.duty > above.duty ? below : above);
+    row.candidates.push_back({n * step, sigma.frequency, sigma.duty});
   }
   return row;
 }
 
-double vpFrequencyRows::doubtOf(const Candidate &candidate) const
+double vpFrequencyRows::sigmaOf(const Candidate &candidate) const
 {
-  return std::hypot(candidate.frequencyDoubt, 1e-6 * m_oscillatorPpm * candidate.frequency);
+  return std::hypot(candidate.frequencySigma, 1e-6 * m_oscillatorPpm * candidate.frequency);
 }
 
 double vpFrequencyRows::widest() const
@@ -80,7 +80,7 @@ double vpFrequencyRows::widest() const
   double least = std::numeric_limits<double>::infinity();
   for (const Row &row : m_rows) {
     for (const Candidate &candidate : row.candidates) {
-      least = std::min(least, doubtOf(candidate));
+      least = std::min(least, sigmaOf(candidate));
     }
   }
   return std::max(0.0, m_highest - m_lowest) / least + 1;
@@ -110,7 +110,7 @@ std::vector<double> vpFrequencyRows::longestChain(const std::vector<Candidate> &
   std::vector<double> reach(n);
   std::vector<size_t> byReachedUntil(n);
   for (size_t i = 0; i < n; ++i) {
-    reach[i] = distance * doubtOf(candidates[i]);
+    reach[i] = distance * sigmaOf(candidates[i]);
     byReachedUntil[i] = i;
   }
   const auto until = [&](size_t i) { return candidates[i].frequency + reach[i]; };
@@ -151,7 +151,7 @@ std::vector<vpModulation> vpFrequencyRows::filled(unsigned int set, double along
     const double room = roomAcross(set, i);
     std::vector<Candidate> certain;
     for (const Candidate &candidate : m_rows[i].candidates) {
-      if (candidate.dutyDoubt * acrossDuty <= room) {
+      if (candidate.dutySigma * acrossDuty <= room) {
         certain.push_back(candidate);
       }
     }

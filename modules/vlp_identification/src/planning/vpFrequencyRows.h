@@ -12,8 +12,8 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Lamps in rows of one duty each, along the frequencies, as many as there is room for: frequencies of much
-  doubt, where edges hide, are passed over.
+  Lamps in rows of one duty each, along the frequencies, as many as there is room for: frequencies of a
+  large sigma, where edges hide, are passed over.
 */
 class vpFrequencyRows
 {
@@ -37,14 +37,14 @@ public:
 
 private:
   struct Candidate {
-    double frequency, frequencyDoubt, dutyDoubt; // clocks perfect
+    double frequency, frequencySigma, dutySigma; // clocks perfect
   };
   struct Row {
     double duty;
     std::vector<Candidate> candidates; // ascending in frequency
   };
   Row rowOf(const vpLedIdPlanner &planner, double duty, double lines) const;
-  double doubtOf(const Candidate &candidate) const;
+  double sigmaOf(const Candidate &candidate) const;
   std::vector<double> longestChain(const std::vector<Candidate> &candidates, double distance) const;
   double roomAcross(unsigned int set, size_t row) const;
 

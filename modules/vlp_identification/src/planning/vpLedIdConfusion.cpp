@@ -27,10 +27,10 @@ namespace
 struct Seen {
   const vpModulation *sent;
   double apparent; // Hz, of the stripes
-  vpStripeDoubt doubt;
-  std::vector<vpStripeDoubt> scatter;     // at some phases; empty of a word
-  std::optional<vpMergedPulses> onePulse; // the duties that it may have where one pulse is seen
-  double chipDistance = 0;                // of two words that differ in one chip
+  vpStripeUncertainty sigma;
+  std::vector<vpStripeUncertainty> scatter; // at some phases; empty of a word
+  std::optional<vpMergedPulses> onePulse;   // the duties that it may have where one pulse is seen
+  double chipDistance = 0;                  // of two words that differ in one chip
   std::string chips;
 };
 
@@ -60,8 +60,9 @@ bool comparable(const Seen &a, const Seen &b)
   return (a.sent->kind == b.sent->kind && a.chips.size() == b.chips.size()) || (a.onePulse && b.onePulse);
 }
 
-//! Squared distance in units of a pair of doubts, words' chips left out.
-double squaredDistance(const Seen &one, const Seen &other, const vpStripeDoubt &ofA, const vpStripeDoubt &ofB)
+//! Squared distance in units of a pair of standard deviations, words' chips left out.
+double squaredDistance(const Seen &one, const Seen &other, const vpStripeUncertainty &ofA,
+                       const vpStripeUncertainty &ofB)
 {
   const vpModulation &a = *one.sent, &b = *other.sent;
   const bool pulses = a.kind == vpModulation::Kind::twoPulse;
@@ -82,7 +83,7 @@ double squaredDistance(const Seen &one, const Seen &other, const vpStripeDoubt &
 double errorOf(const Seen &sent, const Seen &other)
 {
   double sum = 0;
-  for (const vpStripeDoubt &here : sent.scatter) {
+  for (const vpStripeUncertainty &here : sent.scatter) {
     sum += vpNormalTail(0.5 * std::sqrt(squaredDistance(sent, other, here, here)));
   }
   return sum / static_cast<double>(sent.scatter.size());
@@ -91,7 +92,7 @@ double errorOf(const Seen &sent, const Seen &other)
 vpLedIdPair pairOf(const Seen &a, const Seen &b)
 {
   vpLedIdPair pair;
-  double squared = squaredDistance(a, b, a.doubt, b.doubt);
+  double squared = squaredDistance(a, b, a.sigma, b.sigma);
   if (a.sent->kind == vpModulation::Kind::word) {
     pair.chips = static_cast<int>(vpWordCode(a.chips).distance(vpWordCode(b.chips)));
     squared += std::pow(std::min(a.chipDistance, b.chipDistance), 2) * pair.chips;
@@ -120,7 +121,7 @@ Seen seenWord(const vpStripePrediction &prediction, const vpLamp &lamp, double l
   chips.kind = vpModulation::Kind::pwm;
   chips.frequency = 0.5 * sent.chipRate;
   const auto length = static_cast<double>(seen.chips.size());
-  seen.doubt.frequency = prediction.doubt(chips, lines, lamp.oscillatorPpm).frequency * 2 / length;
+  seen.sigma.frequency = prediction.uncertainty(chips, lines, lamp.oscillatorPpm).frequency * 2 / length;
   seen.chipDistance = 2 * prediction.contrast(chips.frequency) * std::sqrt(lines / length) /
                       (prediction.lineNoise(0.5) * prediction.margin);
   return seen;
@@ -155,7 +156,7 @@ std::vector<vpLedIdPair> vpLedIdPlanner::confusion(const vpLampMap &map, double 
                       ? seenWord(prediction, lamp, lines)
                       : Seen{&lamp.modulation,
                              apparentOf(lamp.modulation, 2 * prediction.fold()),
-                             prediction.doubt(lamp.modulation, lines, lamp.oscillatorPpm),
+                             prediction.uncertainty(lamp.modulation, lines, lamp.oscillatorPpm),
                              prediction.scatter(lamp.modulation, lines, lamp.oscillatorPpm),
                              onePulseOf(lamp.modulation, prediction.exposure()),
                              0,

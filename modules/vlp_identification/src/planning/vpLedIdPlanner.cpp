@@ -47,15 +47,15 @@ bool isGood(double error, double acceptance, const vpLedIdPlanner &planner)
 
 struct Placed {
   const vpModulation *lamp;
-  vpStripeDoubt doubt;
+  vpStripeUncertainty sigma;
 };
 
 //! In standard deviations; 0 of lamps whose stripes tell nothing.
 double distanceOf(const Placed &a, const Placed &b)
 {
   const double distance =
-      std::hypot((a.lamp->frequency - b.lamp->frequency) / std::max(a.doubt.frequency, b.doubt.frequency),
-                 (*a.lamp->duty - *b.lamp->duty) / std::max(a.doubt.duty, b.doubt.duty));
+      std::hypot((a.lamp->frequency - b.lamp->frequency) / std::max(a.sigma.frequency, b.sigma.frequency),
+                 (*a.lamp->duty - *b.lamp->duty) / std::max(a.sigma.duty, b.sigma.duty));
   return std::isnan(distance) ? 0 : distance;
 }
 
@@ -74,7 +74,7 @@ public:
 
 private:
   const vpLedIdPlanner *m_planner;
-  double m_largestDoubt = 0;           // Hz
+  double m_largestSigma = 0;           // Hz
   std::vector<double> m_wrong, m_none; // probabilities: another one's id, no id
 
   static constexpr double m_far = 14; // standard deviations, from where on a neighbour does no harm
@@ -91,25 +91,25 @@ Judgement::Judgement(const vpLedIdPlanner &planner, std::vector<vpModulation> id
             });
   std::vector<Placed> placed;
   for (const vpModulation &lamp : plan.identifiers) {
-    placed.push_back({&lamp, planner.prediction.doubt(lamp, lines, oscillatorPpm)});
-    m_largestDoubt = std::max(m_largestDoubt, placed.back().doubt.frequency);
+    placed.push_back({&lamp, planner.prediction.uncertainty(lamp, lines, oscillatorPpm)});
+    m_largestSigma = std::max(m_largestSigma, placed.back().sigma.frequency);
   }
   const double odds = std::log(planner.minConfidence / (1 - planner.minConfidence));
   m_wrong.assign(placed.size(), 0);
   m_none.assign(placed.size(), planner.refusedByGates());
   for (size_t i = 0; i < placed.size(); ++i) {
     for (size_t j = i + 1; j < placed.size(); ++j) {
-      const double along = (placed[j].lamp->frequency - placed[i].lamp->frequency) / m_largestDoubt;
+      const double along = (placed[j].lamp->frequency - placed[i].lamp->frequency) / m_largestSigma;
       if (along > std::max(m_far, std::min(plan.separation, 1e6))) {
         break;
       }
       const double distance = distanceOf(placed[i], placed[j]);
       plan.separation = std::min(plan.separation, distance);
       const double wrong = vpNormalTail(0.5 * distance);
-      const double doubtful = distance > 0 ? vpNormalTail(0.5 * distance - odds / distance) : 1;
+      const double undecided = distance > 0 ? vpNormalTail(0.5 * distance - odds / distance) : 1;
       for (const size_t k : {i, j}) {
         m_wrong[k] += wrong;
-        m_none[k] += doubtful;
+        m_none[k] += undecided;
       }
     }
   }
@@ -137,7 +137,7 @@ std::vector<vpModulation> Judgement::others() const
   for (const size_t i : worstFirst) {
     const double frequency = plan.identifiers[i].frequency;
     if (std::none_of(gone.begin(), gone.end(),
-                     [&](double other) { return std::abs(other - frequency) < m_far * m_largestDoubt; })) {
+                     [&](double other) { return std::abs(other - frequency) < m_far * m_largestSigma; })) {
       out[i] = true;
       gone.push_back(frequency);
     }
@@ -152,8 +152,9 @@ std::vector<vpModulation> Judgement::others() const
 }
 
 /*!
-  The same, judged. A lamp of much doubt has many neighbours in duty, so the first share may be too large; and
-  doubt may peak between the frequencies at which the rows know it: then those are left out whom it concerns.
+  The same, judged. A lamp of a large sigma has many neighbours in duty, so the first share may be too large;
+  and sigma may peak between the frequencies at which the rows know it: then those are left out whom it
+  concerns.
 */
 vpLedIdPlan mostGood(vpFrequencyRows &rows, const vpLedIdPlanner &planner, double lines, double oscillatorPpm)
 {

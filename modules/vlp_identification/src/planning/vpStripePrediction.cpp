@@ -238,8 +238,8 @@ std::pair<size_t, size_t> vpStripePrediction::linesUnder(double lines, int trial
   return {m_middle.size() == n ? 0 : stride * static_cast<size_t>(trial) % (m_middle.size() - n + 1), n};
 }
 
-vpStripeDoubt vpStripePrediction::hiddenEdgesAt(const vpModulation &modulation, double lines, int trial,
-                                                double negligible) const
+vpStripeUncertainty vpStripePrediction::hiddenEdgesAt(const vpModulation &modulation, double lines, int trial,
+                                                      double negligible) const
 {
   // Short enough that the stripes hardly tell: it leaves gaps of its own.
   const double exposure = m_exposure * (1 - 0.5 * exposureTolerance);
@@ -258,13 +258,14 @@ vpStripeDoubt vpStripePrediction::hiddenEdgesAt(const vpModulation &modulation, 
   return {f * f * (room.longer - room.shorter), shift, shift};
 }
 
-vpStripeDoubt vpStripePrediction::hiddenEdges(const vpModulation &modulation, double lines) const
+vpStripeUncertainty vpStripePrediction::hiddenEdges(const vpModulation &modulation, double lines) const
 {
-  static const double negligible = 0.1; // share of the doubt that there is anyhow
+  static const double negligible = 0.1; // share of the other errors
   const double least = negligible * frequencySigma(modulation, lines);
-  vpStripeDoubt worst;
+  vpStripeUncertainty worst;
   for (int trial = 0; trial < phases; ++trial) {
-    const vpStripeDoubt here = hiddenEdgesAt(modulation, lines, trial, std::max(least, worst.frequency));
+    const vpStripeUncertainty here =
+        hiddenEdgesAt(modulation, lines, trial, std::max(least, worst.frequency));
     worst.frequency = std::max(worst.frequency, here.frequency);
     worst.duty = std::max(worst.duty, here.duty);
   }
@@ -272,7 +273,7 @@ vpStripeDoubt vpStripePrediction::hiddenEdges(const vpModulation &modulation, do
   return worst;
 }
 
-//! Doubt of the duty where the stripes would be the same with pulse and exposure exchanged.
+//! Standard deviation of the duty where the stripes would be the same with pulse and exposure exchanged.
 double vpStripePrediction::takenForExposure(const vpModulation &modulation) const
 {
   const double duty = modulation.duty.value_or(0.5),
@@ -287,7 +288,7 @@ double vpStripePrediction::takenForExposure(const vpModulation &modulation) cons
   return less < 0 ? std::abs(other - duty) : vpStripeLimits::spread(other - duty, less);
 }
 
-vpStripeDoubt vpStripePrediction::shapeSigma(const vpModulation &modulation, double lines) const
+vpStripeUncertainty vpStripePrediction::shapeSigma(const vpModulation &modulation, double lines) const
 {
   const size_t n = std::min(m_middle.size(), static_cast<size_t>(std::max(2.0, std::floor(lines))));
   const double middle = 0.5 * (m_middle[0] + m_middle[n - 1]);
@@ -313,48 +314,49 @@ vpStripeDoubt vpStripePrediction::shapeSigma(const vpModulation &modulation, dou
   known(ofDifference) = anyDifference;
   information.diagonal() += known.cwiseProduct(known).cwiseInverse();
   const Matrix covariance = information.inverse();
-  vpStripeDoubt sigma;
+  vpStripeUncertainty sigma;
   sigma.duty = margin * std::sqrt(covariance(ofDuty, ofDuty));
   sigma.phaseDifference = margin * std::sqrt(covariance(ofDifference, ofDifference));
   sigma.duty = std::hypot(sigma.duty, takenForExposure(modulation));
   return sigma;
 }
 
-vpStripeDoubt vpStripePrediction::doubt(const vpModulation &modulation, double lines,
-                                        double oscillatorPpm) const
+vpStripeUncertainty vpStripePrediction::uncertainty(const vpModulation &modulation, double lines,
+                                                    double oscillatorPpm) const
 {
   return together(modulation, lines, oscillatorPpm, shapeSigma(modulation, lines));
 }
 
-std::vector<vpStripeDoubt> vpStripePrediction::scatter(const vpModulation &modulation, double lines,
-                                                       double oscillatorPpm) const
+std::vector<vpStripeUncertainty> vpStripePrediction::scatter(const vpModulation &modulation, double lines,
+                                                             double oscillatorPpm) const
 {
-  const vpStripeDoubt shape = shapeSigma(modulation, lines);
-  std::vector<vpStripeDoubt> all;
+  const vpStripeUncertainty shape = shapeSigma(modulation, lines);
+  std::vector<vpStripeUncertainty> all;
   for (int trial = 0; trial < phases; ++trial) {
-    vpStripeDoubt hidden = hiddenEdgesAt(modulation, lines, trial, 0);
+    vpStripeUncertainty hidden = hiddenEdgesAt(modulation, lines, trial, 0);
     hidden.frequency /= std::sqrt(12.); // of a uniform distribution
     all.push_back(sum(modulation, lines, oscillatorPpm, shape, hidden));
   }
   return all;
 }
 
-vpStripeDoubt vpStripePrediction::together(const vpModulation &modulation, double lines, double oscillatorPpm,
-                                           const vpStripeDoubt &shape) const
+vpStripeUncertainty vpStripePrediction::together(const vpModulation &modulation, double lines,
+                                                 double oscillatorPpm, const vpStripeUncertainty &shape) const
 {
   return sum(modulation, lines, oscillatorPpm, shape, hiddenEdges(modulation, lines));
 }
 
-vpStripeDoubt vpStripePrediction::sum(const vpModulation &modulation, double lines, double oscillatorPpm,
-                                      const vpStripeDoubt &shape, const vpStripeDoubt &hidden) const
+vpStripeUncertainty vpStripePrediction::sum(const vpModulation &modulation, double lines,
+                                            double oscillatorPpm, const vpStripeUncertainty &shape,
+                                            const vpStripeUncertainty &hidden) const
 {
   const double f = modulation.frequency;
-  vpStripeDoubt doubt;
-  doubt.frequency = std::hypot(std::hypot(frequencySigma(modulation, lines), hidden.frequency),
-                               m_relativeRowTime * f, 1e-6 * oscillatorPpm * f);
-  doubt.duty = std::hypot(shape.duty, hidden.duty, dutyError);
-  doubt.phaseDifference = std::hypot(shape.phaseDifference, hidden.phaseDifference, phaseError);
-  return doubt;
+  vpStripeUncertainty all;
+  all.frequency = std::hypot(std::hypot(frequencySigma(modulation, lines), hidden.frequency),
+                             m_relativeRowTime * f, 1e-6 * oscillatorPpm * f);
+  all.duty = std::hypot(shape.duty, hidden.duty, dutyError);
+  all.phaseDifference = std::hypot(shape.phaseDifference, hidden.phaseDifference, phaseError);
+  return all;
 }
 
 END_VISP_NAMESPACE

@@ -15,7 +15,7 @@
 #include <visp3/vlp_identification/vpLedIdEvidence.h>
 #include <visp3/vlp_identification/vpLitShare.h>
 
-#include "stripes/vpLampGlance.h"
+#include "stripes/vpLampReacquisition.h"
 #include "stripes/vpSteadyLight.h"
 #include "stripes/vpStripeStarts.h"
 #include "vpSeenRegion.h"
@@ -99,7 +99,7 @@ void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObserv
   Stripes that the grey scale cuts off seem longer, and their edges lie where it ends: what is known of them
   is less certain than their noise says, and no frame to come makes it better.
 */
-void doubtClipped(vpLampObservation &lamp)
+void inflateClipped(vpLampObservation &lamp)
 {
   static const double harmless = 0.3, steep = 6; // share of the lit pixels; times, for each share beyond
   const double times = 1 + steep * std::max(0.0, lamp.saturated - harmless);
@@ -185,14 +185,14 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I, const std::vector<vp
   return observe(picture, std::move(rois));
 }
 
-bool vpLedDetector::glance(const vpImage<unsigned char> &I, vpLampObservation &lamp)
+bool vpLedDetector::reacquire(const vpImage<unsigned char> &I, vpLampObservation &lamp)
 {
   check(I);
-  if (!vpLampGlance::suits(lamp) || m_rig.shutter.alongColumns()) {
+  if (!vpLampReacquisition::suits(lamp) || m_rig.shutter.alongColumns()) {
     return false;
   }
   const vpLinePicture picture(I, false);
-  static thread_local vpLampGlance found; // for its memory
+  static thread_local vpLampReacquisition found; // for its memory
   if (!found.find(picture, m_timing, lamp, outlineFitter.shapeSigma)) {
     return false;
   }
@@ -372,7 +372,7 @@ void vpLedDetector::read(const vpLinePicture &picture, Region &region) const
 {
   region.lamp.features = stripesOf(picture, region.fit, region.roi);
   measureArea(picture, region.roi, region.lamp);
-  doubtClipped(region.lamp);
+  inflateClipped(region.lamp);
 }
 
 //! Where a region's lamp is.

@@ -65,7 +65,7 @@ double unknownDensity(const vpStripeFeatures &seen)
 }
 
 //! Why the features name no lamp, whatever the map; empty where they may.
-std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt, double maxSpread)
+std::string unreadable(const vpStripeFeatures &seen, double maxFrequencySigma, double maxSpread)
 {
   if (seen.signal == Signal::unmodulated) {
     return "no stripes";
@@ -73,7 +73,7 @@ std::string unreadable(const vpStripeFeatures &seen, double maxFrequencyDoubt, d
   if (seen.signal == Signal::coded && seen.chips.empty()) {
     return "neither PWM nor a word that was seen whole";
   }
-  if (!(seen.frequencySigma < maxFrequencyDoubt * seen.frequency)) {
+  if (!(seen.frequencySigma < maxFrequencySigma * seen.frequency)) {
     return "too few stripes for a frequency";
   }
   if (seen.alongDuty.empty() && seen.frequencySigma > maxSpread * seen.frequencyBound) {
@@ -261,7 +261,7 @@ vpLedIdRecognizer::Sight vpLedIdRecognizer::sightOf(const vpLampObservation &lam
 {
   const vpStripeFeatures &seen = lamp.features;
   Sight sight;
-  if (!unreadable(seen, maxFrequencyDoubt, maxSpread).empty()) {
+  if (!unreadable(seen, maxFrequencySigma, maxSpread).empty()) {
     return sight;
   }
   sight.readable = true;
@@ -372,7 +372,7 @@ void vpLedIdRecognizer::decide(vpLampObservation &lamp, const Sight &sight) cons
 {
   lamp.id.clear();
   lamp.candidates.clear();
-  lamp.remark = unreadable(lamp.features, maxFrequencyDoubt, maxSpread);
+  lamp.remark = unreadable(lamp.features, maxFrequencySigma, maxSpread);
   lamp.confidence = 1; // of being none of them
   if (!sight.readable) {
     return;

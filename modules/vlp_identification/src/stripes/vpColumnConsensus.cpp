@@ -139,8 +139,8 @@ void SharedModulation::smooth(Strip &strip) const
 {
   std::vector<Estimate> before, after;
   static const double step = 4;
-  const double surprise = filter(strip, false, before);
-  strip.variancePerLine *= std::clamp(surprise, 1 / step, step);
+  const double chiSquare = filter(strip, false, before);
+  strip.variancePerLine *= std::clamp(chiSquare, 1 / step, step);
   filter(strip, false, before);
   filter(strip, true, after);
   for (size_t i = 0; i < before.size(); ++i) {

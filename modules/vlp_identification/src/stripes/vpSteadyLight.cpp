@@ -35,8 +35,8 @@ double deepestDip(const std::vector<double> &values, double tolerance)
 //! s, for how long a lamp is dark on end, once a period at least.
 double darkTime(const vpModulation &sent)
 {
-  static const double usualDuty = 0.8; // the longest that is planned
-  const double period = 1 / sent.repetitionFrequency(), lit = sent.duty.value_or(usualDuty);
+  static const double longestDuty = 0.8; // the longest that is planned
+  const double period = 1 / sent.repetitionFrequency(), lit = sent.duty.value_or(longestDuty);
   switch (sent.kind) {
   case vpModulation::Kind::word:
     return period / static_cast<double>(sent.chips().size());

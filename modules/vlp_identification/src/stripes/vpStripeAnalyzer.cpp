@@ -260,8 +260,8 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     }
   }
   widen(features, profile, start->edgesAgree(features.signal == vpStripeFeatures::Signal::twoPulse));
-  static const double beyondDoubt = 0.04; // misfit from which a word may explain the stripes better
-  if (!(features.misfit < beyondDoubt)) {
+  static const double certain = 0.04; // misfit from which a word may explain the stripes better
+  if (!(features.misfit < certain)) {
     const std::optional<vpWordSearch::Found> word =
         findWord(profile, vpStripeStarts::envelope(profile, peaks, order), order, *this, features.misfit,
                  peaks.size());

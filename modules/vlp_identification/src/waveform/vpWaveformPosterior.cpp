@@ -56,15 +56,15 @@ void vpWaveformFit::integrate()
   m_x = found.mean;
   settle();
   const double misplaced = vpStripeLimits::untrue * gap() * m_x(frequency); // periods
-  Vector doubt = Vector::Zero();
-  doubt(duty) = doubt(phaseDifference) = misplaced;
-  doubt(frequency) = misplaced / m_half;
+  Vector extra = Vector::Zero();
+  extra(duty) = extra(phaseDifference) = misplaced;
+  extra(frequency) = misplaced / m_half;
   const double here = unlikely(m_x, m_coefficient[0]);
   for (const LookAlike &other : lookAlikes()) {
-    doubt(duty) =
-        std::hypot(doubt(duty), vpStripeLimits::spread(other.x(duty) - m_x(duty), other.unlikely - here));
+    extra(duty) =
+        std::hypot(extra(duty), vpStripeLimits::spread(other.x(duty) - m_x(duty), other.unlikely - here));
   }
-  m_sigma = (found.covariance.diagonal().cwiseMax(0) + doubt.cwiseAbs2()).cwiseSqrt();
+  m_sigma = (found.covariance.diagonal().cwiseMax(0) + extra.cwiseAbs2()).cwiseSqrt();
 }
 
 //! About the minimum at m_x.

@@ -158,9 +158,9 @@ double vpWordFit::least(const Word &word, const Light &light, std::vector<char> 
 //! What exposure and gain are off by what is likely, in standard deviations.
 Eigen::Vector2d vpWordFit::prior(const Word &word) const
 {
-  static const double usualGain = 0.3; // of its logarithm
+  static const double gainSigma = 0.3; // of its logarithm
   return {std::log(word.exposure / m_exposure) / m_settings.exposureTolerance,
-          std::log(word.gain) / usualGain};
+          std::log(word.gain) / gainSigma};
 }
 
 //! Offset, envelope and bend by least squares with the word's chips. \return Chi-square.
@@ -198,8 +198,8 @@ double vpWordFit::fitLight(Word &word, Eigen::VectorXd *residuals) const
   for (int p = 2; p < bendPlace; ++p) {
     normal(p, p) += 0.06; // bends of four times the envelope are one standard deviation
   }
-  static const double usualBend = 0.3; // envelopes, standard deviation
-  normal(bendPlace, bendPlace) += 1 / (usualBend * usualBend);
+  static const double bendSigma = 0.3; // envelopes, standard deviation
+  normal(bendPlace, bendPlace) += 1 / (bendSigma * bendSigma);
   const Eigen::Matrix<double, most, 1> light = normal.ldlt().solve(A.transpose() * b);
   for (int p = 0; p < most; ++p) {
     word.light[static_cast<size_t>(p)] = light(p);

@@ -49,7 +49,7 @@ struct VISP_EXPORT vpBoard {
 
   /*!
     What a picture shows in its place: the size of another chessboard, `8x5`, or empty. For messages: a wrong
-    size is the usual reason why none is found.
+    size is the most frequent reason why none is found.
   */
   std::string sizeShown(const vpImage<unsigned char> &I) const;
 

@@ -14,7 +14,7 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! One picture of the board held against what was found.
+//! One picture of the board compared with the result.
 struct VISP_EXPORT vpCalibratedView {
   std::string picture;
   double rms = 0;                                 // px, reprojection error along each axis

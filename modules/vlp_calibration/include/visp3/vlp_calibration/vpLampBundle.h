@@ -22,7 +22,7 @@ struct VISP_EXPORT vpLampDistance {
   double sigma = 0.001; // m
 };
 
-//! An image point held against what was found.
+//! An image point compared with the result.
 struct VISP_EXPORT vpBundleResidual {
   size_t run = 0, view = 0, lamp = 0;
   Eigen::Vector2d point = Eigen::Vector2d::Zero();    // px
@@ -32,7 +32,7 @@ struct VISP_EXPORT vpBundleResidual {
 };
 
 /*!
-  How a base moves where its odometry says v and w: at v (1 + speed) + driftPerTurn w, turning at
+  How a base moves where its odometry measures v and w: at v (1 + speed) + driftPerTurn w, turning at
   w (1 + turn) + turnPerMetre v + turnBias. Wheels whose radii differ by the share e, at a distance d where
   the odometry takes s, have turnPerMetre = e / d, driftPerTurn = e s / 4 and 1 + turn = (1 + speed) s / d.
 */
@@ -44,7 +44,7 @@ struct VISP_EXPORT vpOdometryError {
   double turnBias = 0;     // rad/s
 };
 
-//! What was found, with its doubt.
+//! What was found, with its covariance.
 struct VISP_EXPORT vpBundleResult {
   bool valid = false;
   std::string refusal;                             // one line that says what to do, where not valid
@@ -60,10 +60,10 @@ struct VISP_EXPORT vpBundleResult {
   double rms = 0;         // px, of the residuals used, along each axis
   double imageFactor = 1; // by which the stated standard deviations of image points had to be multiplied
   vpOdometryError odometry;
-  //! m, standard deviation that places of lamps were given which were to be held, and do not explain the
-  //! pictures; 0 where they do.
-  double mapDoubt = 0;
-  std::vector<size_t> doubted; // these lamps
+  //! m, standard deviation that was added to positions of lamps which were to be held, but which do not
+  //! explain the pictures; 0 where they do.
+  double inflatedLampSigma = 0;
+  std::vector<size_t> inflatedLamps; // these lamps
   /*!
     Combinations of rig parameters that the pictures do not tell apart, or only by effects smaller than a
     detector's systematic error: each as text, `u0 with x`. Priors take no part in this.
@@ -76,20 +76,20 @@ struct VISP_EXPORT vpBundleResult {
   (Ceres) over what is left free of rig and lamps, and the pose of each frame.
 
   An image point is predicted at the time of its own line: the pose belongs to the mean time of the frame's
-  images, and from there the base moves on as its odometry says, or, without one, as fast as the frames before
+  images, and from there the base moves on by its odometry, or, without one, as fast as the frames before
   and after show. The residual is that of the solvers, ray = projection of bRc^T (wRb^T (P - wtb) - btc),
   weighed by the point's covariance. Where a lamp's outline is known, its middle is placed in it anew for each
-  solution: a camera that leans otherwise than the rig said sees the middle of a disc elsewhere in its
+  solution: a camera that leans otherwise than the rig stated sees the middle of a disc elsewhere in its
   ellipse, all of them by the same way. Residuals of the motion: how far the step from frame to frame is off
   the odometry's, along the base, sideways and in heading; its constant errors (vpOdometryError) are estimated
   along, and so is the slip of each wheel, which lasts longer than a step (a Gauss-Markov process along its
   way).
 
-  Huber's loss bounds what an outlier does, and points far off are left out in the end. How large the errors
-  of image points and odometry truly are is estimated with the rest: variance components (Foerstner 1979),
-  each the sum of squares of its residuals over their redundancy, which a stochastic trace estimates
+  Huber's loss bounds the influence of an outlier, and points far off are left out in the end. How large the
+  errors of image points and odometry truly are is estimated with the rest: variance components (Foerstner
+  1979), each the sum of squares of its residuals over their redundancy, which a stochastic trace estimates
   (Hutchinson 1990). So the standard deviations hold where an odometry is better or worse than stated, and a
-  detector worse; of one that is better they remain: what all images are off by together shows in no residual.
+  detector worse; for a better detector they are kept: an error that all images share shows in no residual.
 
   The covariance is the inverse of the information of rig and lamps, the poses eliminated (Schur complement).
 */
@@ -98,12 +98,12 @@ class VISP_EXPORT vpLampBundle
 public:
   static constexpr double free = std::numeric_limits<double>::infinity();
 
-  //! Standard deviations of the rig's parameters about what it says: 0 held, free without a prior.
+  //! Standard deviations of the rig's parameters about their given values: 0 held, free without a prior.
   vpRigVector rigSigma = vpRigVector::Zero();
-  //! Of each lamp's position about the map's, m: 0 held, free where the map's place is not believed at all.
+  //! Standard deviation of each lamp's position about the map's, m: 0 held, free without a prior.
   std::vector<double> lampSigma;
-  //! Where no lamp's place is believed: its first lamp then stays where the map has it in x and y, and the
-  //! second in the direction from there that the map has.
+  //! Where no lamp has a prior or is held: a measured distance gives the scale. Its first lamp then keeps x
+  //! and y of the map, and the second one its direction from there.
   std::optional<vpLampDistance> distance;
 
   double slip = 0.01;           // of each wheel's way, standard deviation
@@ -117,7 +117,8 @@ public:
   /*!
     Distance of the wheels, m, where the odometry's turn rate is theirs: then one difference of their radii
     makes both driftPerTurn and turnPerMetre, and without that a sideways offset of the camera would pass for
-    the former. Wheels have no bias. 0: the turn rate is a gyro's, which has one, and knows nothing of metres.
+    the former. Wheels have no bias. 0: the turn rate is a gyro's, which has a bias and does not depend on the
+    distance driven.
   */
   double wheelSeparation = 0.16;
   double odometryScale = 0.05;       // of speed and turn rate, prior standard deviation

@@ -32,7 +32,7 @@ struct VISP_EXPORT vpLampView {
   std::string name;     // of the frame, for messages
   std::vector<vpLampImage> images;
 
-  //! Of the observations those that are lamps of \e map, whole and with an image point of known doubt.
+  //! Of the observations those that are lamps of \e map, whole and with an image point of known covariance.
   static vpLampView of(double timestamp, const std::string &name,
                        const std::vector<vpLampObservation> &observations, const vpLampMap &map);
 
@@ -44,7 +44,7 @@ struct VISP_EXPORT vpLampView {
 struct VISP_EXPORT vpLampRun {
   //! What is known of the robot's motion beside that it stands level on the floor z = 0.
   enum class Motion {
-    wheels, //!< it rolls without slipping sideways, and as far as the odometry says where there is one
+    wheels, //!< it rolls without slipping sideways, and by the odometry's distance where there is one
     spin,   //!< it turns on the spot, its base's origin staying in one place
     known,  //!< it was put at known places, those of `places`
     unknown //!< nothing

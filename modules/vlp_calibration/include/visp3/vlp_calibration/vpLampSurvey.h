@@ -13,11 +13,11 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! A lamp held against the map.
+//! A surveyed lamp compared with the map.
 struct VISP_EXPORT vpSurveyedLamp {
   enum class State {
     measured,     //!< it was given
-    found,        //!< where the map has it, as far as both know
+    found,        //!< where the map has it, within both uncertainties
     displaced,    //!< elsewhere
     undetermined, //!< seen too little: it stays where the map has it
     unseen        //!< likewise
@@ -36,8 +36,8 @@ struct VISP_EXPORT vpSurveyResult {
 
 /*!
   Where lamps hang, from a drive with odometry under them and two lamps or more measured by hand, or one
-  distance: a bundle adjustment over the whole run. Of the other lamps the map's places are not believed, only
-  held against what is found in the end.
+  distance: a bundle adjustment over the whole run. Of the other lamps the map's positions are not used, only
+  compared with the result in the end.
 
   The rig's mount takes part with the standard deviations that its file states: calibrate the mount first.
 */
@@ -47,16 +47,16 @@ public:
   vpLampBundle bundle;                    // its rigSigma: the rig's own; its lampSigma is set by solve()
   std::vector<size_t> measured;           // indices into the map of lamps whose place is exact
   std::optional<vpLampDistance> distance; // in their place
-  double mapSigma = 0.005; // m, of a map that states no position_sigma_m, to be held against it
-  double gate = 4;         // standard deviations beyond which a lamp is displaced
-  double worstSigma = 0.1; // m, from which on a lamp is undetermined
-  size_t fewestViews = 20; // frames that show two lamps or more
+  double mapSigma = 0.005;                // m, of a map that states no position_sigma_m, for this comparison
+  double gate = 4;                        // standard deviations beyond which a lamp is displaced
+  double worstSigma = 0.1;                // m, from which on a lamp is undetermined
+  size_t fewestViews = 20;                // frames that show two lamps or more
 
   /*!
-    Measured lamps that do not explain the pictures are taken for as uncertain as these show
-    (vpBundleResult::mapDoubt). Refuses, with one line that says what to do: too few frames, a robot that
-    stands still, odometry of another clock, unit or sign, measured lamps that are swapped. \throw vpException
-    (badValue) where neither two measured lamps nor a distance is given, or both.
+    Where measured lamps do not explain the pictures, their sigma is inflated until they do
+    (vpBundleResult::inflatedLampSigma). Refuses, with one line that says what to do: too few frames, a robot
+    that stands still, odometry of another clock, unit or sign, measured lamps that are swapped. \throw
+    vpException (badValue) where neither two measured lamps nor a distance is given, or both.
   */
   vpSurveyResult solve(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map) const;
 

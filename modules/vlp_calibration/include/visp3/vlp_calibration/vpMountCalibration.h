@@ -16,11 +16,11 @@ BEGIN_VISP_NAMESPACE
   the spot and driving a square, or from known places. The paper's authors did the latter by hand for the
   principal point.
 
-  What tells what: a lean of the camera traces a circle while the robot spins, and bends the picture of the
-  lamps; its offset on the base traces one as well, of the same size for near lamps and far ones; its heading
-  shows in the direction that a rolling base goes; principal point and focal length against offset and height
-  only where lamps hang at different heights. Parameters that the pictures do not separate are refused, unless
-  they are held or a prior says what is known of them.
+  Which motion shows which parameter. A lean of the camera traces a circle while the robot spins, and bends
+  the picture of the lamps; its offset on the base traces one as well, of the same size for near lamps and far
+  ones; its heading shows in the direction that a rolling base goes; principal point and focal length separate
+  from offset and height only where lamps hang at different heights. Parameters that the pictures do not
+  separate are refused, unless they are held or have a prior.
 
   \code
   vpMountCalibration calibration;
@@ -38,9 +38,10 @@ public:
 
   /*!
     Lamps of \e map that state a sigma take part with it, others count as exact, unless the pictures show that
-    they are not: then as uncertain as these show (vpBundleResult::mapDoubt). Refuses, with one line that
-    says what to do: too few frames, a robot that stands still, odometry of another clock, unit or sign, lamps
-    that are swapped in the map, lamps that hang elsewhere, parameters that the pictures do not separate.
+    they are not: then their sigma is inflated (vpBundleResult::inflatedLampSigma). Refuses, with one line
+    that says what to do: too few frames, a robot that stands still, odometry of another clock, unit or sign,
+    lamps that are swapped in the map, lamps that hang elsewhere, parameters that the pictures do not
+    separate.
   */
   vpBundleResult solve(const std::vector<vpLampRun> &runs, const vpVlpRig &rig, const vpLampMap &map) const;
 

@@ -15,10 +15,10 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   \file vpRigParameters.h
-  What of a rig lamps can tell, as a step from what the rig's files say: translation of the camera in b (x, y,
-  z, m); its rotation by a rotation vector in b, on top of the rig's (roll, pitch, yaw, rad about x, y, z of
-  b); its principal point (u0, v0, pixels of the picture as delivered); its focal length (focal, a share of px
-  and py, whose ratio stays).
+  The rig parameters that lamps can calibrate, as a step from the values in the rig's files: translation of
+  the camera in b (x, y, z, m); its rotation by a rotation vector in b, on top of the rig's (roll, pitch, yaw,
+  rad about x, y, z of b); its principal point (u0, v0, pixels of the picture as delivered); its focal length
+  (focal, a share of px and py, whose ratio stays).
 */
 
 enum class vpRigParameter { x, y, z, roll, pitch, yaw, u0, v0, focal };
@@ -48,7 +48,7 @@ VISP_EXPORT vpVlpRig vpMovedRig(const vpVlpRig &rig, const vpRigVector &step);
 VISP_EXPORT vpRigVector vpRigStep(const vpVlpRig &from, const vpVlpRig &to);
 
 /*!
-  What the rig's file says of its own doubt, as standard deviations of a step: 0 where it says nothing.
+  The standard deviations that the rig's file states, as those of a step: 0 where it states none.
 */
 VISP_EXPORT vpRigVector vpStatedSigma(const vpVlpRig &rig);
 

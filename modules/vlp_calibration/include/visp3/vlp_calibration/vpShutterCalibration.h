@@ -14,27 +14,27 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! What one lamp in one picture says of the shutter.
+//! Estimate of the shutter from one lamp in one picture.
 struct VISP_EXPORT vpShutterSight {
   std::string picture;      // name of its frame
   std::string lamp;         // id
   double rowTime = 0;       // s, that makes its stripes those of the lamp's frequency
   double sigma = 0;         // s, standard deviation by the stripes alone, the lamp's clock exact
-  double exposure = 0;      // s, as soft as its stripes' edges are
+  double exposure = 0;      // s, by the softness of its stripes' edges
   double exposureSigma = 0; // s
-  bool used = true;         // false: too far from all others to be chance
+  bool used = true;         // false: an outlier
 };
 
 //! A rolling shutter as lamps of known frequency show it, or why they do not.
 struct VISP_EXPORT vpShutterEstimate {
   bool valid = false;
   std::string refusal;       // one line that says what to do, where not valid
-  bool alongColumns = false; // readout along columns instead of rows; which end is first, stripes do not show
+  bool alongColumns = false; // readout along columns instead of rows; stripes do not show its direction
   double rowTime = 0;        // s, of the sensor's lines
   double rowTimeSigma = 0;   // s, clocks of the lamps included
-  double exposure = 0;       // s, effective: what sensor, lens and tone curve make of it together
+  double exposure = 0;       // s, effective: of sensor, lens and tone curve together
   double exposureSigma = 0;  // s; NaN where the stripes do not tell it, and then exposure, too
-  size_t pictures = 0;       // that were looked at
+  size_t pictures = 0;       // that were analysed
   std::vector<vpShutterSight> sights;
 };
 
@@ -49,11 +49,11 @@ struct VISP_EXPORT vpShutterEstimate {
 
   The row time is the weighted mean over all sights, in two steps: over the pictures of each lamp, then over
   the lamps, each of whose clocks is off by its `oscillatorPpm`, the same in all its pictures. Sights far from
-  the median are left out. Where sights scatter more than their standard deviations say these are enlarged to
+  the median are left out. Where sights scatter more than their standard deviations, these are inflated to
   match (the Birge ratio).
 
-  A pulse and an exposure are both boxes, and a line's light is their convolution: which is which, the lamp's
-  `duty` tells; where the map does not state it the shorter one is taken for the exposure.
+  A pulse and an exposure are both boxes, and a line's light is their convolution. The lamp's `duty` tells
+  which is which; where the map does not state it, the shorter one is taken for the exposure.
 
   \code
   vpShutterCalibration calibration(rig, map);
@@ -67,7 +67,7 @@ class VISP_EXPORT vpShutterCalibration
 {
 public:
   double gate = 5;                  // standard deviations from the median beyond which a sight is left out
-  double worstRelativeSigma = 0.01; // a single sight less certain than this share says nothing
+  double worstRelativeSigma = 0.01; // a single sight of a larger sigma, as a share, is not used
 
   /*!
     \param rig What is known of the camera: its `resize` is used, its picture size where it has one (else the
@@ -77,7 +77,7 @@ public:
   */
   vpShutterCalibration(const vpVlpRig &rig, const vpLampMap &lamps);
 
-  //! Looks at one picture. \throw vpException (dimensionError) where it has not the size of those before.
+  //! Analyses one picture. \throw vpException (dimensionError) where it has not the size of those before.
   void add(const vpVlpFrame &frame);
 
   vpShutterEstimate solve() const;

@@ -14,8 +14,8 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   One camera of a ViSP camera XML, the files that vpXmlParserCamera reads and writes. That class prints on
-  stdout even where all is well, reports trouble on stderr without file or line, and reads a number that is
-  none as 0; this one prints nothing and throws.
+  stdout even without an error, reports errors on stderr without file or line, and reads a malformed number
+  as 0. This one prints nothing and throws.
 */
 struct VISP_EXPORT vpCameraXml {
   std::string name;

@@ -25,7 +25,7 @@ struct VISP_EXPORT vpLamp {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();     // m, the lamp's middle in the map frame w (z up)
   double positionSigma = 0;                               // m, standard deviation of each coordinate
   Shape shape = Shape::disk;                              // lies flat, its light going straight down
-  double size = std::numeric_limits<double>::quiet_NaN(); // m, diameter or side; NaN where nobody measured it
+  double size = std::numeric_limits<double>::quiet_NaN(); // m, diameter or side; NaN: not measured
   double yaw = 0; // rad about z, of a square: its sides along x and y at 0
   vpModulation modulation;
   double oscillatorPpm = 50; // standard deviation of its clock; 50: a crystal, 10000: RC
@@ -34,8 +34,8 @@ struct VISP_EXPORT vpLamp {
   static vpLamp read(const vpYamlNode &node);
 };
 
-//! Lamps of a map that blink alike: their stripes tell them from all others, and only their places from each
-//! other.
+//! Lamps of a map that send the same signal: stripes distinguish them from all others, and only their
+//! positions from each other.
 struct VISP_EXPORT vpIdentifier {
   vpModulation modulation;
   double oscillatorPpm = 50;

@@ -35,7 +35,7 @@ struct VISP_EXPORT vpLampOutline {
                                           Eigen::Vector2d::Zero()}}; // quadrilateral and region
   Eigen::Matrix2d centreCovariance = Eigen::Matrix2d::Zero();        // px^2
   double residual = 0;     // px, root mean square of edge points about the outline
-  double otherShape = 0.5; // probability of being the other of ellipse and quadrilateral; 0.5: nobody looked
+  double otherShape = 0.5; // probability of being the other of ellipse and quadrilateral; 0.5: not compared
 
   //! Mean diameter of an ellipse, mean side of a quadrilateral or region, pixels.
   double diameter() const;
@@ -55,7 +55,7 @@ struct VISP_EXPORT vpLampOutline {
   Eigen::Vector2d middle(const vpCameraParameters &camera, const Eigen::Vector3d &cNormal) const;
 };
 
-//! What a lamp's frequency would be, were its duty that.
+//! A lamp's frequency under the assumption of one duty.
 struct VISP_EXPORT vpDutySlice {
   double duty = 0;
   double frequency = 0;      // Hz
@@ -63,22 +63,22 @@ struct VISP_EXPORT vpDutySlice {
   double chiSquare = 0;      // of the stripes with that duty, beyond the least
 };
 
-//! What the stripes of one lamp say: the paper's features and the frequency itself.
+//! Features measured from the stripes of one lamp: those of the paper, and the frequency itself.
 struct VISP_EXPORT vpStripeFeatures {
   //! coded: strongly modulated, yet neither pwm nor twoPulse explains the stripes: a word.
   enum class Signal { unmodulated, pwm, twoPulse, coded };
 
   Signal signal = Signal::unmodulated;
-  unsigned int stripes = 0;                                    // bright stripes
-  double area = 0;                                             // px of the lamp's region
-  double frequency = std::numeric_limits<double>::quiet_NaN(); // Hz, at which the signal repeats
-  double frequencySigma =
-      std::numeric_limits<double>::quiet_NaN(); // Hz, of the estimate alone, row time exact
+  unsigned int stripes = 0;                                         // bright stripes
+  double area = 0;                                                  // px of the lamp's region
+  double frequency = std::numeric_limits<double>::quiet_NaN();      // Hz, at which the signal repeats
+  double frequencySigma = std::numeric_limits<double>::quiet_NaN(); // Hz, standard deviation of the estimate
+                                                                    // alone, row time exact
   double frequencyBound =
-      std::numeric_limits<double>::quiet_NaN(); // Hz, that sigma where no edge hides from the lines
+      std::numeric_limits<double>::quiet_NaN(); // Hz, frequencySigma if no edge fell between two exposures
   double frequencyNoise =
-      std::numeric_limits<double>::quiet_NaN(); // Hz, what noise leaves of frequencySigma: new in each frame,
-                                                // unlike where edges hide from the lines; NaN: all of it
+      std::numeric_limits<double>::quiet_NaN(); // Hz, the part of frequencySigma that is noise, independent
+                                                // in each frame; NaN: all of it
   double duty = std::numeric_limits<double>::quiet_NaN(); // lit share of the period
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
   /*!
@@ -90,11 +90,11 @@ struct VISP_EXPORT vpStripeFeatures {
   double phaseDifferenceSigma = std::numeric_limits<double>::quiet_NaN();
   double phase = std::numeric_limits<double>::quiet_NaN(); // periods, from the start of a pulse (twoPulse:
                                                            // the first) to that of the frame; not of a word
-  double exposure = std::numeric_limits<double>::quiet_NaN(); // s, as soft as the stripes' edges are
+  double exposure = std::numeric_limits<double>::quiet_NaN(); // s, by the softness of the stripes' edges
   double exposureSigma = std::numeric_limits<double>::quiet_NaN();
   /*!
     Of a coded signal that was seen for one whole repetition or more: its chips, '1' lit, in the order of
-    time, of all rotations the lexicographically greatest (where the word begins, the stripes do not say). One
+    time, of all rotations the lexicographically greatest (the stripes do not show where the word begins). One
     chip lasts 1 / (frequency * chips.size()). Empty where the word is not known.
   */
   std::string chips;
@@ -110,7 +110,7 @@ struct VISP_EXPORT vpLedIdCandidate {
 };
 
 /*!
-  One lamp-like region of one frame: the hand-over from detection to localization.
+  One lamp-like region of one frame: the interface between detection and localization.
 */
 struct VISP_EXPORT vpLampObservation {
   vpLampOutline outline;
@@ -122,17 +122,16 @@ struct VISP_EXPORT vpLampObservation {
   double noise = 0;     // grey levels, of pixels about its edge, standard deviation
   double saturated = 0; // share of its lit pixels at the end of the grey scale
   double blinking =
-      1; // share of the light inside its outline that blinks as its features say; 0: it has none
+      1; // share of the light inside its outline that has the modulation of its features; 0: none
   vpStripeFeatures features;
   std::vector<vpLedIdCandidate> candidates; // the likeliest first
   std::string id;                           // of the map's lamp; empty: none of them, or more than one
   double confidence = 0;  // probability of that id; without an id, of being none of the map's lamps
   unsigned int track = 0; // number of the lamp that was followed from frame to frame; 0: none
   bool accepted = false;  // counts for the position
-  std::string remark;     // why it has no id or does not count; empty where there is nothing to say
+  std::string remark;     // why it has no id or does not count; else empty
 
-  //! By how much the duty may seem another one since the grey scale ends, the same in all frames; standard
-  //! deviation.
+  //! Standard deviation of the duty's error by saturation, the same error in all frames.
   double clippedDuty() const { return 0.2 * saturated; }
 };
 

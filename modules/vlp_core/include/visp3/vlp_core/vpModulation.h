@@ -31,9 +31,8 @@ struct VISP_EXPORT vpModulation {
   enum class Code { ook, manchester };
 
   Kind kind = Kind::unmodulated;
-  double frequency = 0; // Hz, repetition rate of pwm and twoPulse
-  std::optional<double>
-      duty; // in (0, 1); unset where nobody measured it, then it takes no part in recognition
+  double frequency = 0;         // Hz, repetition rate of pwm and twoPulse
+  std::optional<double> duty;   // in (0, 1); unset: not measured, and not used in recognition
   double phaseDifference = 0;   // periods, twoPulse only
   std::string bits;             // '0' and '1', word only
   double chipRate = 0;          // Hz, word only

@@ -19,8 +19,8 @@ VISP_EXPORT std::string vpDegreesText(double radians);
 
 /*!
   Reads a decimal number, whatever the locale. False where \e text is anything else than one number with
-  blanks around it, or a number that a double cannot hold. Infinities and NaN are read too: who wants a finite
-  number checks.
+  blanks around it, or a number that a double cannot hold. Infinities and NaN are read too: a caller that
+  needs a finite number has to check.
 */
 VISP_EXPORT bool vpParseNumber(const std::string &text, double &value);
 

@@ -34,7 +34,7 @@ struct VISP_EXPORT vpRollingShutter {
 /*!
   The software that made the delivered picture out of the sensor's: `nearest` as OpenCV's INTER_NEAREST
   (delivered pixel k is sensor pixel floor(k s), s the ratio of the sizes), `area` the mean over s x s sensor
-  pixels. The one place that knows what a resize does to pixel positions.
+  pixels. All rules for pixel positions under a resize are here.
 */
 struct VISP_EXPORT vpPictureResize {
   enum class Method { none, nearest, area };
@@ -110,7 +110,7 @@ public:
   */
   const std::vector<double> &linePositions() const { return m_linePosition; }
   const std::vector<double> &samplePositions() const { return m_samplePosition; }
-  //! Whether each sample lies where its number says.
+  //! Whether each sample lies at its own number.
   bool samplesAligned() const { return m_aligned; }
 
 private:

@@ -8,7 +8,7 @@
 /*!
   Before a function with loops that the compiler vectorises: it is compiled for several instruction sets, of
   which the program takes the best that the processor has when it starts (GCC's target_clones). None of them
-  contracts products and sums, so that all give the same bits. Elsewhere than on x86-64 it says nothing; there
+  contracts products and sums, so that all give the same bits. Elsewhere than on x86-64 it is empty; there
   the processor's vectors are in any program.
 */
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(VLP_NO_SIMD_CLONES)

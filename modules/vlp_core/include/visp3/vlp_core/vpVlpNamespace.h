@@ -7,7 +7,7 @@
 
 /*!
   \file vpVlpNamespace.h
-  ViSP from 3.7 on can wrap everything in a namespace; ViSP 3.5 knows nothing of it. With this header the same
+  ViSP from 3.7 on can wrap everything in a namespace; ViSP 3.5 does not. With this header the same
   source compiles in both.
 */
 

@@ -16,7 +16,7 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  The camera as it sits on the robot: what a rig.yaml says.
+  The camera as mounted on the robot: the content of a rig.yaml.
 */
 struct VISP_EXPORT vpVlpRig {
   std::string cameraFile;    // ViSP XML that the parameters came from, path as written in the rig file

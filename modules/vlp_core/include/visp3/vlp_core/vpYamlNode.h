@@ -15,8 +15,9 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Strict reading of a YAML mapping: each key is asked for once by name, and finish() refuses what nobody asked
-  for. Every error is a vpException whose one line names file, line, field, what came and what was expected.
+  Strict reading of a YAML mapping: each key is asked for once by name, and finish() refuses keys that were
+  not asked for. Every error is a vpException whose one line names file, line, field, what came and what was
+  expected.
 */
 class VISP_EXPORT vpYamlNode
 {

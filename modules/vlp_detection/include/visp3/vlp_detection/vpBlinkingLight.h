@@ -17,9 +17,10 @@ BEGIN_VISP_NAMESPACE
 /*!
   The whole of a light that blinks in a known way, freed of its stripes.
 
-  All parts of one lamp are exposed at the same time and have one modulation. So where a part of a lamp has
-  said how it blinks, the rest of it is what lit lines have more than the dark lines beside them. Means over
-  lit lines show light that no single pixel does; what shines steadily, or blinks otherwise, is not in them.
+  All parts of one lamp are exposed at the same time and have one modulation. So where the modulation
+  of a part of a lamp is known, the rest of it is the light by which lit lines exceed the dark lines beside
+  them. Means over lit lines show light that no single pixel does; what shines steadily, or blinks otherwise,
+  is not in them.
 */
 class VISP_EXPORT vpBlinkingLight
 {

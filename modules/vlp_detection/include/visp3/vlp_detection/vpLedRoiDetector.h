@@ -59,10 +59,10 @@ struct VISP_EXPORT vpLedRoi {
   light falls off at their ends by more than noise would, and whose chords look most like one whole lamp:
   convex, on an ellipse or a quadrilateral, with a sharp edge. So a dim lamp beside a bright one and lamps
   joined by their halos all get the level that suits them. The ceiling is such a region too, where it is
-  brighter than the darkest part of the picture, and may have the shape of a lamp; it does not blink with the
-  lamps before it, which are chosen then. Crumbs of a halo and pieces of a larger choice are left out at the
-  end. Where noise is so strong that single pixels do not show a lamp, means of several along the lines are
-  looked at as well.
+  brighter than the darkest part of the picture, and may have the shape of a lamp; it does not blink as the
+  lamps in front of it do, and these are chosen then. Small parts of a halo and of a larger region are left
+  out at the end. Where noise is so strong that single pixels do not show a lamp, means of several along the
+  lines are used as well.
 */
 class VISP_EXPORT vpLedRoiDetector
 {

@@ -29,12 +29,12 @@ struct VISP_EXPORT vpOutlineFit {
   A rolling shutter multiplies each line of the lamp's blurred picture by what the lamp gave during that
   line's exposure: I(u, v) = b + a D(u, v) on line v, where D is 1 inside the outline, 0 outside and between
   them a Gaussian edge integrated over each pixel's square. Left and right end of each line have their own a
-  and b, whatever the lamp's waveform, an uneven emitter or a halo make them, and where a's of left ends
+  and b, which depend on the lamp's waveform, an uneven emitter or a halo, and where a's of left ends
   differ from those of right ones, the lens darkens (shades) D along the lines. a and b are eliminated from
   the least squares in closed form (variable projection, Golub and Pereyra 1973, with Kaufman's approximation
-  of the Jacobian). What is left is the outline and the blur, by Gauss-Newton with weights that let go of ends
-  that do not fit (Tukey's biweight on each end's distance from the outline). Where the stripes leave the
-  ellipse open, a weak prior (axes equal within `shapeSigma`) closes it, and the covariance says so.
+  of the Jacobian). What is left is the outline and the blur, by Gauss-Newton with weights that exclude ends
+  that do not fit (Tukey's biweight on each end's distance from the outline). Where the stripes do not
+  determine the ellipse, a weak prior does (axes equal within `shapeSigma`), and the covariance includes it.
 
   Ellipse and quadrilateral compete by likelihood (Schwarz 1978); what the stripes do not tell apart adds to
   the covariance. A lamp with no edge to fit, since it glows about a bright core or a lens blurs it, is placed

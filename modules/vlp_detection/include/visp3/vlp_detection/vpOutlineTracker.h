@@ -32,7 +32,8 @@ public:
 
   /*!
     \param expected Where the outline is expected, samples and lines of \e picture. \param blur px, that it
-    had. \param shapeSigma As vpOutlineFitter::shapeSigma. \return Whether it is there; then fit() says where.
+    had. \param shapeSigma As vpOutlineFitter::shapeSigma. \return Whether it is there; then fit() is the
+    result.
   */
   bool find(const vpLinePicture &picture, const vpLineTiming &timing, const vpLampOutline &expected,
             double blur, double shapeSigma);

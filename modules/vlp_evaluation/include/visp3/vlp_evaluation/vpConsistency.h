@@ -21,10 +21,10 @@ VISP_EXPORT double vpChiSquareCdf(double value, double degrees);
 VISP_EXPORT double vpChiSquareQuantile(double share, double degrees);
 
 /*!
-  Whether errors are as large as their covariances say: the normalised estimation error squared,
+  Whether errors agree with their covariances: the normalised estimation error squared,
   NEES = e' P^-1 e, which for errors of covariance P is chi-square distributed (Bar-Shalom, Li, Kirubarajan:
   Estimation with Applications to Tracking and Navigation, 2001, section 5.4.2). A mean above the interval
-  says that the sigmas are too small, one below it that they are too large. The interval holds for errors
+  shows that the sigmas are too small, one below it that they are too large. The interval holds for errors
   that are independent of each other; those of a standing robot share the lamps' and camera's errors.
 */
 class VISP_EXPORT vpConsistency

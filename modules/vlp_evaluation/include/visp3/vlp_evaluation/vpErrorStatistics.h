@@ -25,7 +25,7 @@ VISP_EXPORT double vpPercentile(std::vector<double> values, double share);
   deviation is that of the population: rmse^2 = mean^2 + deviation^2.
 */
 struct VISP_EXPORT vpErrorStatistics {
-  size_t count = 0; // 0: all below are 0 and say nothing
+  size_t count = 0; // 0: all below are 0 and meaningless
   double mean = 0;
   double median = 0;
   double rmse = 0;

@@ -18,14 +18,14 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! How poses are held against the truth.
+//! How poses are compared with the truth.
 struct VISP_EXPORT vpEvaluationSettings {
   vpAlignment alignment = vpAlignment::none;
   double longestGap = 1;           // s, of the truth, over which it is interpolated
   std::optional<vpTrackLine> line; // that the robot was to drive; default: vpTrackLine::of the truth
 };
 
-//! What the log of a run says beyond its poses.
+//! Statistics of a run's log beyond its poses.
 struct VISP_EXPORT vpFixStatistics {
   size_t frames = 0;
   size_t fixes = 0;          // frames with a position that is the only one
@@ -46,7 +46,7 @@ struct VISP_EXPORT vpStatistic {
 };
 
 /*!
-  An estimated trajectory held against the truth: the statistics of the paper's section 3, and those that it
+  An estimated trajectory compared with the truth: the statistics of the paper's section 3, and those that it
   lacks. Errors are the estimate minus the truth of the same time (m, rad, along the axes of w).
 */
 struct VISP_EXPORT vpEvaluation {
@@ -67,7 +67,7 @@ struct VISP_EXPORT vpEvaluation {
   vpErrorDistribution distribution{{}}; // of the horizontal distances
 
   //! Of the errors (x, y). For a robot that stands still these are its positions shifted by one vector, so
-  //! that it is the paper's dispersion; for one that moves it says the same of its errors.
+  //! that it is the paper's dispersion; for one that moves it is that of its errors.
   vpDispersion dispersion;
 
   std::optional<vpTrackLine> line;    // given, or of the truth
@@ -78,10 +78,10 @@ struct VISP_EXPORT vpEvaluation {
   std::optional<vpFixStatistics> fixes; // where a log is given
 
   /*!
-    \param fixes Log of the same run, or nullptr. Its poses are held against the truth as they are; under an
+    \param fixes Log of the same run, or nullptr. Its poses are compared with the truth unaligned; under an
     alignment their covariances belong to another map, and no consistency is stated. Neither do fixes count
     there that are ambiguous, or have no sigma above 0.
-    \return Without any pair of poses, what the log says and 0 for all errors.
+    \return Without any pair of poses, the log's statistics and 0 for all errors.
     \throw vpException (badValue) where the longest gap is not above 0, or an error is beyond all numbers.
   */
   static vpEvaluation of(const vpTrajectory &truth, const vpTrajectory &estimate,

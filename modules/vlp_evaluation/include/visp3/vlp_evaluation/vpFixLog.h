@@ -22,7 +22,7 @@ struct VISP_EXPORT vpLoggedFix {
     fix,       //!< of one frame alone
     tracking,  //!< carried from frame to frame and corrected
     coasting,  //!< the same, uncertain: lamps are too few or hidden
-    relocated  //!< where no motion leads to, and no third lamp has borne it out yet
+    relocated  //!< a place that no motion explains, not yet confirmed by a third lamp
   };
 
   //! Whether there is a position that is the only one.

@@ -28,7 +28,7 @@ struct VISP_EXPORT vpReportTile {
 
 /*!
   One HTML page, well-formed as XML too, that holds the tables and figures and refers to nothing outside of
-  it. \param title Any text, and so are the names of the files. \param sources Lines that say where the data
+  it. \param title Any text, and so are the names of the files. \param sources Lines that state where the data
   come from.
 */
 VISP_EXPORT std::string vpHtmlReport(const std::string &title, const std::vector<std::string> &sources,

@@ -16,10 +16,10 @@ BEGIN_VISP_NAMESPACE
   The exposure of the camera's lines, which all lamps of a frame and all frames of a run share.
 
   Its prior is what the rig states: the logarithm is normal about the stated one. A lamp's stripes are the
-  pulse averaged over the exposure, two boxes of which the stripes do not say which is which
-  (vpStripeFeatures::duty and exposure may change places). So one lamp leaves two exposures open; lamps of
+  pulse averaged over the exposure, two boxes that the stripes do not tell apart
+  (vpStripeFeatures::duty and exposure may be exchanged). So one lamp leaves two exposures possible; lamps of
   several frequencies have only the true one in common. The posterior is a product over lamps of these
-  mixtures, each with a share of lamps that say nothing, on a grid.
+  mixtures, each with a share of lamps without information, on a grid.
 */
 class VISP_EXPORT vpExposureEvidence
 {

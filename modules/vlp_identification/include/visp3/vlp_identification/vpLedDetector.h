@@ -63,12 +63,13 @@ public:
   bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows);
 
   /*!
-    Looks again at a lamp that was seen in the frame before, in a fraction of the time: fits its outline from
-    where it is expected and compares its stripes with what is known of them. \param lamp As it was, `outline`
-    where it is expected now, `features` all that is known of it; as it is, if it is found. \return False
-    where it is not there, or in any respect not as before, or was not seen well enough: detect() tells more.
+    Finds a lamp again whose identity is known, in a fraction of detect()'s time: fits its outline from the
+    expected place and compares its stripes with the known features. \param lamp In: the lamp as last seen,
+    with `outline` at the place expected now and `features` of all frames so far. Out, if found: as seen now.
+    \return False where it is not there, differs in any respect, or was not seen well enough before; then use
+    detect().
   */
-  bool glance(const vpImage<unsigned char> &I, vpLampObservation &lamp);
+  bool reacquire(const vpImage<unsigned char> &I, vpLampObservation &lamp);
 
   //! \throw vpException (dimensionError) where \e I has not the size that the rig states.
   void check(const vpImage<unsigned char> &I) const;
@@ -76,10 +77,10 @@ public:
   //! Every lamp-like region of the last picture, the one with the largest lit area first.
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
-  //! What the lamps of the last picture say of the rig's row time.
+  //! Error of the rig's row time, by the lamps of the last picture.
   const vpRowTimeError &rowTimeError() const { return m_rowTimeError; }
 
-  //! What the lamps of all pictures so far say of the exposure.
+  //! Exposure, by the lamps of all pictures so far.
   const vpExposureEvidence &exposure() const { return m_exposure; }
 
   /*!

@@ -10,17 +10,16 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  What several frames of one lamp say together: its evidence adds up over a track, so that frames decide what
-  one of them leaves open.
+  Features of one lamp over several frames: evidence adds up over a track, so that frames decide what one of
+  them leaves undecided.
 
   Lamp and camera share no clock, so each frame measures frequency, duty and phase difference anew, with
   errors of its own: their mean, weighted by inverse variance, is the estimate of all frames. But where edges
-  hide from the lines, be it between short exposures, frames at a steady rate may hide them alike: the phase
-  of a lamp advances by nearly the same share of a line from frame to frame. What that leaves open of the
-  frequency (all but vpStripeFeatures::frequencyNoise) is taken as common to all frames, which is the worst
-  that it can be. Errors that frames share (the row time's, the oscillator's, the systematic one of a duty) do
-  not shrink by repetition; the recogniser adds them, once. A word that frames agree on is wrong only where
-  all of them are.
+  fall between the exposures of lines, this may repeat in frames at a steady rate: the phase
+  of a lamp advances by nearly the same share of a line from frame to frame. The frequency error that comes of
+  this (all but vpStripeFeatures::frequencyNoise) is taken as common to all frames, the worst case. Errors
+  that frames share (the row time's, the oscillator's, the systematic one of a duty) do not shrink by
+  repetition; the recogniser adds them, once. A word that frames agree on is wrong only where all of them are.
 
   \code
   vpLedIdEvidence evidence;               // of one track
@@ -34,22 +33,22 @@ BEGIN_VISP_NAMESPACE
 class VISP_EXPORT vpLedIdEvidence
 {
 public:
-  double gate = 5; // standard deviations; a frame farther off shows another lamp, and evidence begins anew
+  double gate = 5; // standard deviations; a frame farther off shows another lamp, and evidence starts again
 
-  //! Whether features say anything about an id: not without stripes, of a word not seen whole, with too few
-  //! stripes for a frequency.
+  //! Whether features have information about an id: not without stripes, of a word not seen whole, with too
+  //! few stripes for a frequency.
   static bool tells(const vpStripeFeatures &seen);
 
   /*!
-    \param seen One frame's. Features that tell nothing count as no frame.
+    \param seen One frame's. Features without information on an id count as no frame.
     \return False where it contradicts what came before, which is then forgotten.
   */
   bool add(const vpStripeFeatures &seen);
 
-  //! Whether a frame may show the lamp that the frames before showed; so may one that tells nothing.
+  //! Whether a frame may show the lamp that the frames before showed; so may one without such information.
   bool agrees(const vpStripeFeatures &seen) const;
 
-  //! Of all frames together; the last frame's where none told anything.
+  //! Of all frames together; the last frame's where none had any.
   const vpStripeFeatures &features() const { return m_features; }
 
   //! Frames that the features rest on.

@@ -47,7 +47,7 @@ struct VISP_EXPORT vpWordPlan {
 //! How easily two identifiers of a map are taken for each other.
 struct VISP_EXPORT vpLedIdPair {
   size_t first = 0, second = 0; // indices into vpLampMap::identifiers()
-  double distance = 0;          // standard deviations, at the phase against the lines that hides most edges
+  double distance = 0;          // standard deviations, at the phase against the lines with most edges in gaps
   double error = 0; // probability that one is nearer to what is measured of the other, at any phase
   int chips = -1;   // of two words of equal length: least Hamming distance over rotations
 };
@@ -63,12 +63,12 @@ struct VISP_EXPORT vpLedIdReuse {
   Which frequencies and duties lamps should have so that a rig tells them apart, how many it can hold, and
   which lamps of a map it will confuse.
 
-  Distances. What is measured of a lamp scatters about what the map says with the standard deviations of
-  vpStripePrediction. The recogniser holds a measurement against all lamps with that measurement's own doubt.
-  So the distance of two lamps is that of their features in units of the larger of their two standard
-  deviations, all features together: d^2 = sum ((x1 - x2) / max(s1, s2))^2. A measurement is nearer to the
-  wrong one of the two with probability Q(d / 2), Q the upper tail of the normal distribution; of a lamp with
-  several neighbours the sum of these is a bound.
+  Distances. Measured features of a lamp scatter about those of the map with the standard deviations of
+  vpStripePrediction. The recogniser compares a measurement with all lamps, by that measurement's own standard
+  deviations. So the distance of two lamps is that of their features in units of the larger of their two
+  standard deviations, all features together: d^2 = sum ((x1 - x2) / max(s1, s2))^2. A measurement is nearer
+  to the wrong one of the two with probability Q(d / 2), Q the upper tail of the normal distribution; of a
+  lamp with several neighbours the sum of these is a bound.
 
   Error. Of neighbours on both sides, 2 Q(d / 2) <= maxError: d >= 6.6 for 1 in 1000.
 
@@ -80,9 +80,9 @@ struct VISP_EXPORT vpLedIdReuse {
   two neighbours may overlap: between them the odds decide, not the gates.
 
   Where several duties are used, neighbours in frequency get nine tenths of the error and neighbours in duty
-  one tenth, or less where that is not enough: frequencies are what there is to save. Of each duty the longest
-  chain of frequencies is taken in which neighbours are far enough apart, which passes over those at which
-  edges hide (vpStripePrediction::hiddenEdges()).
+  one tenth, or less where that is not enough: frequencies are the scarce resource. Of each duty the longest
+  chain of frequencies is taken in which neighbours are far enough apart, which leaves out those at which
+  edges fall between exposures (vpStripePrediction::hiddenEdges()).
 */
 class VISP_EXPORT vpLedIdPlanner
 {
@@ -101,7 +101,7 @@ public:
   //! the fold.
   double highestFrequency = std::numeric_limits<double>::quiet_NaN();
   double leastStripes = 3;
-  double flicker = 500; // Hz, above which no eye sees a lamp flicker even where gaze or lamp moves
+  double flicker = 500; // Hz, above which people see no flicker, even where eye or lamp moves
   double leastContrast = 0.2;
   double foldShare = 0.9;
   double frequencyStep = 1; // Hz: frequencies are multiples of this
@@ -130,7 +130,7 @@ public:
   std::vector<size_t> capacities(double lines, const std::vector<double> &oscillatorsPpm) const;
 
   //! How many frequencies a count of stripes or the bins of an FFT tell apart in the same range: 1 / (N T_r)
-  //! from one to the next. What others have (Xie, Guan et al. 2018), for comparison.
+  //! from one to the next. As in Xie, Guan et al. 2018, for comparison.
   size_t bins(double lines) const;
 
   /*!

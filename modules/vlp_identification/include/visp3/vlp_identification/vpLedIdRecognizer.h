@@ -13,10 +13,10 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! How far the row time is off, as the lamps of one frame tell it.
+//! Error of the row time, estimated from the lamps of one frame.
 struct VISP_EXPORT vpRowTimeError {
   double mean = 0;  // true row time over the stated one, minus 1
-  double sigma = 0; // its standard deviation; the stated one's where no lamp tells more
+  double sigma = 0; // its standard deviation; the stated one's where no lamp improves it
 };
 
 /*!
@@ -29,39 +29,39 @@ struct VISP_EXPORT vpRowTimeError {
   Frequencies are measured in row times, whose relative error is common to all lamps in view. With it as d,
   lamp a of frequency f_a is seen at f_a (1 + d) + e, e being the estimate's own error and the oscillator's.
   The frame's evidence about d is p(d) times the product over its lamps of sum_a p(a) N(f - f_a (1 + d); e);
-  each lamp is judged by what all others leave of d, integrated on a grid. So two lamps of a rig whose row
-  time is known to 1 % calibrate it for each other.
+  each lamp is judged by the posterior of d given all others, integrated on a grid. So two lamps of a rig
+  whose row time is known to 1 % calibrate it for each other.
 
   An identifier that lies within `gate` standard deviations in frequency, and `shapeGate` in duty and phase
-  difference, is a candidate. Near simple fractions of the rate of lines all edges may hide between exposures:
-  the frequency is known the worse for it, and strangers fit that would show for what they are elsewhere. So
-  the gate on the estimate's error grows no wider than `boundGate` times what edges anywhere leave
-  (vpStripeFeatures::frequencyBound), and what is known `maxSpread` times worse than that has no candidate.
+  difference, is a candidate. Near simple fractions of the rate of lines all edges may fall between exposures:
+  the frequency is then less certain, and lamps that the map does not know may pass the gate. So the gate on
+  the estimate's error is limited to `boundGate` times the bound (vpStripeFeatures::frequencyBound). A
+  frequency whose sigma is more than `maxSpread` times that bound has no candidate.
   Where duty and frequency are known together only (vpStripeFeatures::alongDuty), each identifier is compared
-  with what the frequency would be with its duty, and one that states none within `spreadGate` of all of them.
-  Two pulses with a gap shorter than the exposure may be seen as one, of any duty from about theirs to about
-  theirs and two gaps: such lamps compete for stripes that look like plain PWM.
+  with the frequency that belongs to its own duty, and one that states none within `spreadGate` of all of
+  them. Two pulses with a gap shorter than the exposure may be seen as one, of any duty from about theirs to
+  about theirs and two gaps: such lamps compete for stripes that look like plain PWM.
 
-  Of a lamp whose shape the map states by its size, the outline has that shape: a window that crossbars divide
-  evenly has the stripes of a lamp, and is no disc.
+  Where the map states a lamp's size, the outline must have the lamp's shape: a window that crossbars divide
+  evenly shows stripes as a lamp does, but is no disc.
 
-  A lamp has an outline, and its stripes explain most of the light inside. Where two overlap, or what was
-  read is a neighbour's, they do not (`leastBlinking`).
+  A lamp has an outline, and its stripes explain most of the light inside. Where two lamps overlap, or
+  the stripes are a neighbour's, they do not (`leastBlinking`).
 
-  One that has at least `minConfidence` and a single lamp gives the id. What several lamps of one identifier
-  leave open, or several candidates, is for geometry to decide: `candidates` hands them on.
+  One that has at least `minConfidence` and a single lamp gives the id. Between several lamps of one
+  identifier, or several candidates, geometry decides: `candidates` lists them.
 */
 class VISP_EXPORT vpLedIdRecognizer
 {
 public:
   double gate = 3.5;               // standard deviations, on the frequency
-  double boundGate = 2.1;          // times the bound, on what the estimate is off by
-  double spreadGate = 1.2;         // standard deviations, on what an unstated duty leaves open of it
+  double boundGate = 2.1;          // times the bound, on the estimate's error
+  double spreadGate = 1.2;         // standard deviations, on the frequency's range under an unstated duty
   double shapeGate = 4;            // standard deviations, on duty and phase difference
   double leastShape = 1e-3;        // probability of its shape below which a whole outline is another lamp's
   double leastBlinking = 2. / 3;   // of the light in an outline, that its lamp's stripes have to explain
   double minConfidence = 0.99;     // probability below which no id is given
-  double maxFrequencyDoubt = 0.03; // share of the frequency: less certain stripes are recognised as nothing
+  double maxFrequencySigma = 0.03; // share of the frequency: less certain stripes are recognised as nothing
   double maxSpread = 4;            // frequencySigma over frequencyBound, above which there is no id
   double dutyError = 0.03;         // systematic error of a measured duty, standard deviation
   double phaseError = 0.01;        // of a measured phase difference, periods

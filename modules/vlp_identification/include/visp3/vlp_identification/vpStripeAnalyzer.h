@@ -41,10 +41,11 @@ struct VISP_EXPORT vpStripeProfile {
   /*!
     The same of a luminaire of any emission pattern: a pixel is S(u, v) m(v), S any positive pattern, m the
     modulation. Strips of a few columns inside the outline, or in the region's box where that has none, tell
-    both by turns: S of each strip as a random walk along the lines, m of each line from what all other lines
-    say of S there. Patches, glare and clipped columns are outliers of a few strips. Where all strips change
-    alike while the lamp is lit, nothing tells S from m, and m has it. Less certain than along() where the
-    emitter is even. \return As if a lit line had 100 grey levels; lines that tell nothing are left out.
+    both by turns: S of each strip as a random walk along the lines, m of each line from the S that all
+    other lines predict there. Patches, glare and clipped columns are outliers of a few strips. Where all
+    strips change alike while the lamp is lit, S and m cannot be separated, and all is taken for m. Less
+    certain than along() where the emitter is even. \return As if a lit line had 100 grey levels; lines
+    without information are left out.
   */
   static vpStripeProfile agreedByColumns(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                          const vpOutlineFit &fit, const vpLedRoi &roi);
@@ -58,7 +59,7 @@ struct VISP_EXPORT vpWordFormat {
 };
 
 /*!
-  What the stripes say: maximum likelihood over the line profile, and the posterior about it.
+  Features of the stripes: maximum likelihood over the line profile, and the posterior about it.
 
   A lamp's light on the line exposed about t is o + E(y) S(t): the waveform averaged over the exposure, which
   weighs harmonic k by sinc(k f T_e), times the emitter's envelope along the lines. Starts come from the edges
@@ -84,17 +85,17 @@ public:
   //! deviation of its logarithm.
   double exposureTolerance = 0.02;
   //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained; no word of unknown format
-  //! is sought below. Between the little that there is: pwm lamps of phones leave up to 0.09, coded lamps
+  //! is sought below. Known values: pwm lamps of phones leave up to 0.09, coded lamps
   //! seen for less than a word from 0.165 on.
   double maxMisfit = 0.13;
-  double minAgreement = 0.85;     // of the halves of lines: what varies along a line is no shutter's work
+  double minAgreement = 0.85;     // of the halves of lines: the shutter's stripes do not vary along a line
   double minModulation = 0.05;    // depth of stripes below which a lamp counts as unmodulated
   bool searchUnknownWords = true; // of formats that are not in `words`: a search of tenths of a second
   bool searchTwoPulses = true;    // off where no lamp of the map is one: a search of tens of milliseconds
   double minSignificance = 30;    // gain in chi-square by which a sinusoid has to beat a plain lamp
 
   double minWordConfidence = 0.99; // probability that all chips of a word are right below which none is given
-  std::vector<vpWordFormat> words; // that the map's lamps send; of other formats it takes more to be sure
+  std::vector<vpWordFormat> words; // that the map's lamps send; other formats need more repetitions
 
   //! Signal, frequency, duty, phase difference, chips, stripes, modulation, misfit; area is left to the
   //! caller.

@@ -15,24 +15,24 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! Standard deviations with which the recogniser compares a lamp's stripes with what the map says of them.
-struct VISP_EXPORT vpStripeDoubt {
+//! Standard deviations with which the recogniser compares a lamp's stripes with those that the map predicts.
+struct VISP_EXPORT vpStripeUncertainty {
   double frequency = 0;       // Hz: estimate, row time and oscillator together
   double duty = 0;            // estimate and vpLedIdRecognizer::dutyError together
   double phaseDifference = 0; // periods, of two pulses; estimate and vpLedIdRecognizer::phaseError together
 };
 
 /*!
-  What a rig will be able to tell from the stripes of a lamp, before the lamp hangs.
+  How precisely a rig will measure the stripes of a lamp, predicted before the lamp is installed.
 
   A lamp of N lines, T_r apart on average, whose stripes have the amplitude A (half their swing) against the
-  noise sigma of one line. The frequency of a sinusoid can be told no better than to
+  noise sigma of one line. The standard deviation of a sinusoid's frequency is at least
 
       sigma_f = (1 / (2 pi T_r)) sqrt(12 / (eta N (N^2 - 1))),   eta = A^2 / (2 sigma^2)
 
   (Cramer-Rao bound; Rife and Boorstyn 1974). A pulse of duty d has the fundamental (4 / pi) sin(pi d) A, and
   an exposure T_e weakens it by |sinc(f T_e)|. What vpStripeAnalyzer reaches lies below `margin` times that
-  bound (BENCHMARK.md, "The frequency of stripes").
+  bound (tests/bench/stripes.md).
 */
 class VISP_EXPORT vpStripePrediction
 {
@@ -43,10 +43,10 @@ public:
   */
   double snrDb = 20;
   double margin = 1.3; // standard deviations of frequency and duty over their bounds
-  //! Share of its light by which a line may be off beyond noise: what the analyser puts into its own sigmas.
+  //! Error of a line's light beyond noise, as a share of that light: as in the analyser's own sigmas.
   double modelError = vpStripeAnalyzer().modelError;
-  //! Share of the exposure by which the rig's may be off. More than vpStripeAnalyzer expects: a plan has to
-  //! hold for cameras that expose for a line more or less than they say.
+  //! Share of the exposure by which the rig's may be off. More than vpStripeAnalyzer assumes: a plan has to
+  //! hold for cameras whose exposure is a line longer or shorter than stated.
   double exposureTolerance = 0.1;
   double dutyError = 0.03;  // as vpLedIdRecognizer::dutyError
   double phaseError = 0.01; // periods, as vpLedIdRecognizer::phaseError
@@ -81,45 +81,44 @@ public:
   double frequencySigma(const vpModulation &modulation, double lines) const;
 
   /*!
-    What edges add that hide where lines leave gaps between their exposures: as a nearest-neighbour resize
-    does, or a short exposure. An edge in a gap may lie anywhere there, and of a frequency that is nearly a
-    simple fraction of the rate of lines all edges hide alike. Two edges of one kind, l periods apart, allow
-    the period to change by as much as both have room, divided by l. The narrowest of these ranges is what the
-    frequency may be off by; all of it is taken for a standard deviation, since the analyser's own ones reach
-    that, and of all phases against the lines the worst. In Hz and periods.
+    Error by edges that fall into gaps between the exposures of lines, as after a nearest-neighbour resize or
+    with a short exposure. An edge in a gap may lie anywhere there. If the frequency is nearly a simple
+    fraction of the rate of lines, all edges fall into gaps alike. Two edges of one kind, l periods apart,
+    allow the period to change by as much as both have room, divided by l. The narrowest of these ranges is
+    what the frequency may be off by; all of it is taken for a standard deviation, since the analyser's own
+    ones reach that, and of all phases against the lines the worst. In Hz and periods.
   */
-  vpStripeDoubt hiddenEdges(const vpModulation &modulation, double lines) const;
+  vpStripeUncertainty hiddenEdges(const vpModulation &modulation, double lines) const;
 
   /*!
-    Standard deviations of duty and phase difference by the stripes, edges all seen: from the Fisher
+    Standard deviations of duty and phase difference by the stripes, no edge in a gap: from the Fisher
     information of frequency, phase, duty, exposure (known to `exposureTolerance` only), phase difference,
-    offset and amplitude together, averaged over the phase. Of a pulse about as long as the exposure the
-    stripes do not say which is which.
+    offset and amplitude together, averaged over the phase. A pulse about as long as the exposure cannot be
+    told from it by the stripes.
   */
-  vpStripeDoubt shapeSigma(const vpModulation &modulation, double lines) const;
+  vpStripeUncertainty shapeSigma(const vpModulation &modulation, double lines) const;
 
   //! All of it together, with row time, oscillator (standard deviation in 1e-6 of the frequency) and the
   //! recogniser's own errors.
-  vpStripeDoubt doubt(const vpModulation &modulation, double lines, double oscillatorPpm) const;
+  vpStripeUncertainty uncertainty(const vpModulation &modulation, double lines, double oscillatorPpm) const;
   //! The same where \e shape is known, which changes slowly with frequency and takes longest.
-  vpStripeDoubt together(const vpModulation &modulation, double lines, double oscillatorPpm,
-                         const vpStripeDoubt &shape) const;
+  vpStripeUncertainty together(const vpModulation &modulation, double lines, double oscillatorPpm,
+                               const vpStripeUncertainty &shape) const;
 
-  //! Root mean square of what a line of the lamp may be off by, as a share of A: noise, and the model's
-  //! error.
+  //! Root mean square error of a line of the lamp, as a share of A: noise and model error.
   double lineNoise(double duty) const;
 
-  //! How far measurements will scatter, at each of some phases of the lamp against the lines: with the range
-  //! that hidden edges leave there as a uniform distribution. Mostly far less than doubt(), which has the
-  //! worst.
-  std::vector<vpStripeDoubt> scatter(const vpModulation &modulation, double lines,
-                                     double oscillatorPpm) const;
+  //! Standard deviations of measurements at each of some phases of the lamp against the lines: hidden edges
+  //! with a uniform distribution over their range there. Mostly far less than uncertainty(), which has
+  //! the worst.
+  std::vector<vpStripeUncertainty> scatter(const vpModulation &modulation, double lines,
+                                           double oscillatorPpm) const;
 
 private:
-  vpStripeDoubt hiddenEdgesAt(const vpModulation &modulation, double lines, int trial,
-                              double negligible) const;
-  vpStripeDoubt sum(const vpModulation &modulation, double lines, double oscillatorPpm,
-                    const vpStripeDoubt &shape, const vpStripeDoubt &hidden) const;
+  vpStripeUncertainty hiddenEdgesAt(const vpModulation &modulation, double lines, int trial,
+                                    double negligible) const;
+  vpStripeUncertainty sum(const vpModulation &modulation, double lines, double oscillatorPpm,
+                          const vpStripeUncertainty &shape, const vpStripeUncertainty &hidden) const;
   double takenForExposure(const vpModulation &modulation) const;
   std::pair<size_t, size_t> linesUnder(double lines, int trial) const;
 

@@ -44,9 +44,9 @@ struct VISP_EXPORT vpLampMatch {
     took no part.
   */
   std::vector<size_t> lamps;
-  std::vector<double> probabilities; // of each lamp's identifier, as its stripes say; 0 with noLamp
+  std::vector<double> probabilities; // of each lamp's identifier, by its stripes; 0 with noLamp
   vpHomogeneousMatrix wMb; // where unique: a level pose, good enough to tell lamps apart and for no more
-  double odds = 0;         // of this place against all others together, whatever the last pose says of them
+  double odds = 0;         // of this place against all others together, without the last pose's prior
   bool byHint = false;     // found near the last pose, without a look at the rest of the map
   size_t hypotheses = 0;   // places that were looked at
 };
@@ -58,7 +58,7 @@ struct VISP_EXPORT vpLampMatch {
   Under the mount's attitude two lamps give the pose in closed form (vpTwoLampSolver). Every pair of lamps of
   the map that two regions may show, whose distance fits that of the regions in the picture and the height of
   the camera, is a hypothesis; an index by identifier and place finds these pairs, and then for each other
-  region the lamp that its ray leads to. A least-squares fit over the lamps found so says how likely the
+  region the lamp that its ray leads to. A least-squares fit over the lamps found so gives how likely the
   picture is from there:
 
     log E = sum over its lamps of [log(p N / n) + log(A / strangers) + log density of the residual]
@@ -68,9 +68,8 @@ struct VISP_EXPORT vpLampMatch {
   (MacKay 2003, chapter 28: the factor by which the picture is likelier from there than if all its regions
   were strangers). A place is the answer where its E is `minOdds` times that of all other places and of
   a chance agreement together. Pairs are tried until a place that was missed would leave out too many regions
-  to count. Lamps that the pose expects and the picture does not show are no argument: lamps are hidden and
-  switched off, whole wings of them at a time, and taking each for chance would let darkness overrule
-  geometry.
+  to count. Lamps that the pose predicts and the picture does not show do not count against a place: lamps are
+  hidden and switched off, many at a time, so that missing lamps are not independent.
 
   A last pose restricts the search to its surroundings. What is found there is the answer if it explains
   every region. Otherwise the whole map is searched, and the last pose only decides between places that
@@ -79,7 +78,7 @@ struct VISP_EXPORT vpLampMatch {
 class VISP_EXPORT vpLampMatcher
 {
 public:
-  double mapTolerance = 0.03;   // m, how far lamps may hang from where the map says, standard deviation
+  double mapTolerance = 0.03;   // m, how far lamps may hang from the map's positions, standard deviation
   double tiltTolerance = 0.01;  // rad, how far the robot may lean where the rig states less, likewise
   double baseHeight = 0;        // m, z of the robot's base: it stands on the floor
   double baseHeightSigma = 0.1; // m, standard deviation

@@ -36,8 +36,8 @@ public:
 
     Free attitude: starts from all poses that each three lamps in a row leave, and compares all minima with
     every lamp in front of the camera. Three lamps fit up to
-    four poses exactly; a flat group seen almost head-on has two that hardly differ. What the rig's
-    rotationSigma says of roll and pitch is a prior of estimate and comparison. Without it, of poses that
+    four poses exactly; a flat group seen almost head-on has two that hardly differ. The rig's
+    rotationSigma of roll and pitch is a prior of estimate and comparison. Without it, of poses that
     the picture does not tell apart the most upright one is the fix, the next one `other`. A tilt that the
     picture shows in the second order only, as that of a small flat group seen head-on, is in the covariance
     by the likelihood's own spread about the fix.

@@ -40,13 +40,13 @@ public:
 
     Refuses, with one line: a value that is not finite, one id twice, lamps that coincide in the map or in
     the picture or hang one above the other, rays that do not point above the horizon, places that no height
-    explains or only one above the lamps, and what the two limits say.
+    explains or only one above the lamps, and pairs beyond the two limits.
   */
   vpVlpFix solve(const vpLampSight &first, const vpLampSight &second, const vpVlpRig &rig) const;
 
   /*!
     The pair with the smallest predicted position covariance (trace over x, y) of all pairs that solve()
-    accepts. The paper's node 4 asks for lamps with different x and y instead; that rule says nothing of the
+    accepts. The paper's node 4 asks for lamps with different x and y instead; that rule does not regard the
     geometry seen. Where solve() accepts none, the refusal is that of the pair which lies widest apart in
     the picture.
   */

@@ -24,7 +24,7 @@ BEGIN_VISP_NAMESPACE
 
   The state, with its covariance:
   - the pose: x, y, z, yaw, and roll and pitch about x and y of b. The last two are constants of the rig, as
-    uncertain as its rotationSigma says (known where that is 0): the base stands level and the camera leans
+    uncertain as its rotationSigma states (known where that is 0): the base stands level and the camera leans
     about its own centre. Where the attitude is free both lean as one, and change;
   - the velocity of the base along x and y of b and its turn rate, constant but for random accelerations;
   - the odometry's errors: scales of speed and turn rate, bias of the turn rate;
@@ -41,7 +41,7 @@ BEGIN_VISP_NAMESPACE
   several of them by how likely the lamps were (Blom and Bar-Shalom 1988).
 
   Odometry is the velocity's mean over the interval of each sample. Where it is followed, the base moves
-  between samples on the arc that they say, and accelerates at random where there is none.
+  between samples on the arc of that velocity, and accelerates at random where there is none.
 
   \code
   vpVlpFilter filter(rig);
@@ -58,7 +58,7 @@ public:
   //! Thresholds on the covariance, no more: whoever drives a robot decides by the covariance itself.
   enum class State {
     starting, //!< no pose yet
-    tracking, //!< the pose is as certain as trackingSigma and trackingYaw say
+    tracking, //!< the pose is as certain as trackingSigma and trackingYaw demand
     coasting, //!< less certain, yet more than lostSigma and lostYaw: a lamp or two, or none, for a while
     lost      //!< less certain than these; a new start is needed
   };
@@ -70,8 +70,8 @@ public:
 
   double acceleration = 0.5;   // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
   double turnAcceleration = 3; // rad/s^2/sqrt(Hz), likewise
-  double startShare = 0.1;     // of both from start() on, until rouse() or calm()
-  double drift = 0.002;        // m/sqrt(s), of z where the robot is restless: a floor is not quite flat
+  double startShare = 0.1;     // of both from start() on, until allowManoeuvre() or setManoeuvreShare()
+  double drift = 0.002;        // m/sqrt(s), of z where the robot moves: a floor is not quite flat
   double tiltDrift = 0.05;     // rad/sqrt(s), of roll and pitch where the attitude is free
   double startPlace = 0.3;     // m, standard deviation of x, y and z at the start, before its lamps are seen
   double startTurn = 0.3;      // rad, likewise of yaw
@@ -89,14 +89,14 @@ public:
                                    // mount and none for its lens
   double focalLength = 0.003;      // share, likewise
   double claimedTilt =
-      0.004; // rad, doubtClaims(): standard deviation added to roll and pitch, each time twice as much
+      0.004; // rad, widenClaims(): standard deviation added to roll and pitch, each time twice as much
   double claimedPlace = 0.002; // m, likewise to each coordinate of each lamp
   bool freeAttitude = false;   // roll and pitch change, and are as uncertain as the fix at the start
 
   enum class Odometry {
     ignored,
     measured, //!< a measurement of a velocity that is constant but for the random accelerations
-    followed  //!< the velocity is what it says
+    followed  //!< the velocity is the odometry's
   };
   Odometry odometry = Odometry::followed;
 
@@ -130,7 +130,7 @@ public:
   void advance(double time);
   double time() const { return m_time; }
 
-  //! What a lamp's ray says, before it is believed.
+  //! A lamp's ray compared with its prediction, before the update.
   struct Innovation {
     bool inFront = false;                                 // of the camera, else the rest means nothing
     Eigen::Vector2d ray = Eigen::Vector2d::Zero();        // measured minus predicted, normalised units
@@ -149,9 +149,9 @@ public:
   void update(const vpLampSight &lamp);
 
   //! The robot may start, stop or turn at any time.
-  void rouse() { m_unrest = 1; }
+  void allowManoeuvre() { m_manoeuvreShare = 1; }
   //! Its velocity is constant but for that share of the random accelerations.
-  void calm(double share) { m_unrest = share; }
+  void setManoeuvreShare(double share) { m_manoeuvreShare = share; }
 
   /*!
     Mean and covariance of a mixture. \param parts Copies of one filter that went on under different
@@ -159,10 +159,10 @@ public:
   */
   void mix(const std::vector<const vpVlpFilter *> &parts, const std::vector<double> &weights);
 
-  //! Takes the rig's attitude and the map's places for less certain than they say, by claimedTilt and
-  //! claimedPlace; from the next start() on, since what was estimated before rests on the claims.
-  void doubtClaims();
-  bool doubtsClaims() const { return m_placeDoubt > 0; }
+  //! Adds claimedTilt and claimedPlace to the stated sigmas of the rig's attitude and the map's places, from
+  //! the next start() on: earlier estimates rest on the stated sigmas alone.
+  void widenClaims();
+  bool claimsWidened() const { return m_extraPlaceSigma > 0; }
 
   //! After start(): the velocity is what led here from \e before (m, of x and y in w; rad), \e since s ago.
   void comeFrom(const vpVlpFix &before, double since);
@@ -170,7 +170,7 @@ public:
   /*!
     Linearises what follows about the path on which \e corrected has come to its mark(), up to conclude(): the
     estimate stays what it is, and is carried along as an offset from that path (iterated filter with the
-    interval before the mark smoothed, Bell and Cathey 1993). \return False along odometry, which says the
+    interval before the mark smoothed, Bell and Cathey 1993). \return False along odometry, which measures the
     path well enough: then nothing changes.
   */
   bool linearizeAbout(const vpVlpFilter &corrected);
@@ -263,7 +263,10 @@ private:
   struct Predicted;
   Predicted predict(const vpLampSight &lamp) const;
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
-  double placeSigma(const vpLampSight &lamp) const { return std::hypot(lamp.positionSigma, m_placeDoubt); }
+  double placeSigma(const vpLampSight &lamp) const
+  {
+    return std::hypot(lamp.positionSigma, m_extraPlaceSigma);
+  }
   Innovation innovation(const vpLampSight &lamp, const Predicted &predicted) const;
   //! \param stated The covariance that the lamp's ray came with.
   void weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated);
@@ -299,8 +302,8 @@ private:
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
   std::vector<vpOdometry> m_startOdometry;            // m_odometry at the start
   std::vector<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
-  double m_tiltDoubt = 0;             // rad, added to what the rig says of roll and pitch
-  double m_placeDoubt = 0;            // m, added to what the map says of its lamps
+  double m_extraTiltSigma = 0;        // rad, added to the rig's sigma of roll and pitch
+  double m_extraPlaceSigma = 0;       // m, added to the map's sigma of its lamps
   double m_noise = 1;                 // variance of the lamps' points, as a share of the stated one
   int m_weighed = 0;                  // points that it rests on
   Eigen::Matrix4d m_information = Eigen::Matrix4d::Zero(); // of x, y, z and yaw, by the lamps since the mark
@@ -308,7 +311,7 @@ private:
   double m_imageSpeed = 0;                                 // px/s, of the fastest of them
   Eigen::Matrix4d m_common =
       Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
-  double m_unrest = 1;         // share of the random accelerations
+  double m_manoeuvreShare = 1; // share of the random accelerations
   double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 

@@ -10,7 +10,7 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  What vpVlpLocalizer thinks possible, and how probable it is before a frame is seen. `src/MODEL.md` is the
+  The hypotheses that vpVlpLocalizer considers, and their prior probabilities. `src/MODEL.md` is the
   model; each member is a rate, a probability, or a length of it.
 */
 struct VISP_EXPORT vpVlpHypotheses {
@@ -22,7 +22,7 @@ struct VISP_EXPORT vpVlpHypotheses {
   double change = 0.5;    // 1/s, at which it leaves one kind of motion for any of the others
   double settling = 3;    // 1/s, at which it comes back to the steady one
 
-  // Whether the odometry tells its velocity.
+  // Whether the odometry measures its velocity.
   double right = 0.95;  // where it begins
   double slip = 0.0003; // 1/s, at which it ceases to
   double grip = 3;      // 1/s, at which it does so again
@@ -34,13 +34,13 @@ struct VISP_EXPORT vpVlpHypotheses {
   double floorStep = 0.01;  // m, in z: Cauchy distribution
 
   // What is seen with a lamp's id.
-  double displaced = 0.001; // the lamp, off by what vpVlpLocalizer::mapTolerance says
+  double displaced = 0.001; // the lamp, off by vpVlpLocalizer::mapTolerance
   double stranger = 0.001;  // another light, anywhere in the picture
   double staying = 0.99;    // another light still, where it was in the frame before
-  double copy = 0.005;  // 1/s, at which two lamps give way to two others as far apart: a mirror shows such
-  double copyReach = 1; // m, of the way between them in x and y: bivariate Cauchy distribution
+  double copy = 0.005;      // 1/s, at which two others as far apart replace two lamps: a mirror shows such
+  double copyReach = 1;     // m, of the way between them in x and y: bivariate Cauchy distribution
 
-  // Whether rig and map are as exact as they say.
+  // Whether rig and map are as exact as they state.
   double claimsOff = 0.01; // they are off by vpVlpFilter's claimedTilt and claimedPlace more
 
   double negligible = 1e-3; // a hypothesis less probable than this is dropped

@@ -30,7 +30,7 @@ struct VISP_EXPORT vpVlpLocation {
   double timestamp = 0;   // s, of the frame
   vpVlpFix fix;           // fix.valid false and fix.refusal where there is no position
   bool tracked = false;   // the filter's, not of this frame alone
-  bool relocated = false; // the robot seems to have been put there, which no third lamp has borne out yet
+  bool relocated = false; // the robot seems to have been put there; no third lamp has confirmed it yet
   vpVlpFilter::State state = vpVlpFilter::State::starting; // of fix, by its covariance
   std::vector<vpLampObservation> observations; // every lamp-like region, accepted where it counts for the fix
   std::vector<vpRect> searched; // px, the windows in which they were looked for; empty: the whole picture
@@ -40,8 +40,8 @@ struct VISP_EXPORT vpVlpLocation {
   The whole system: a frame goes in, a pose comes out. process() is the paper's section 2, top to bottom.
 
   The first pose is that of two lamps or more in one frame. From there on the filter carries it: each lamp
-  corrects it at the time of its own line, one lamp alone as well, and where there is none it goes on as the
-  odometry says, or as fast as before. `tracking` off: each frame by itself.
+  corrects it at the time of its own line, one lamp alone as well, and where there is none it goes on by the
+  odometry, or as fast as before. `tracking` off: each frame by itself.
 
   A map may use one identifier for several lamps, and a reflection shows the identifier of its lamp. Where a
   picture holds such lamps, `matcher` tells by their places which lamp each is, the last pose being a hint.
@@ -67,7 +67,7 @@ public:
   vpLampMatcher matcher; // under the mount's attitude, with a map tolerance of its own; free: does not run
   vpVlpFilter filter;    // its odometry: addOdometry() before process()
   vpVlpHypotheses hypotheses; // of what happens between two frames
-  double mapTolerance = 0.03; // m, how far lamps may hang from where the map says before they disagree, sigma
+  double mapTolerance = 0.03; // m, how far lamps may be off their map position before they disagree, sigma
   double outlierLikelihood = 1e-4; // lamps disagree where their residuals are less likely than this
 
   double hintReach = 0.3; // m, how far from the last pose lamps that blink alike are looked for first,

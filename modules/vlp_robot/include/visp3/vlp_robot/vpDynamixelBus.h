@@ -19,21 +19,21 @@ struct VISP_EXPORT vpDynamixelStatistics {
   std::uint64_t transactions = 0; // asked for
   std::uint64_t attempts = 0;     // requests sent
   std::uint64_t timeouts = 0;     // attempts without a whole answer
-  std::uint64_t crcErrors = 0; // attempts whose answer failed its CRC, or that the device says failed theirs
-  std::uint64_t foreign = 0;   // valid packets that answer something else
+  std::uint64_t crcErrors = 0;    // attempts with a CRC error, found by the host or by the device
+  std::uint64_t foreign = 0;      // valid packets that answer something else
   std::uint64_t skippedBytes = 0; // that belong to no packet
   std::uint64_t failures = 0;     // transactions without an answer at their deadline
-  bool alert = false;             // a device has said that something is wrong with its hardware
+  bool alert = false;             // a device has reported a fault of its hardware
 };
 
 /*!
   Ping, Read and Write of DYNAMIXEL protocol 2.0, each confirmed by the device's answer. An attempt without a
   valid answer is repeated until the deadline, which is a time of now().
 
-  The protocol numbers nothing: an answer that comes after its attempt was given up looks like that of the
-  next attempt. So for some time after an attempt that went unanswered, doubtful() is true, and an answer
-  shows that the device took some request of late, perhaps not the last one. Who must know then reads back
-  what it wrote. An answer of the wrong length is never taken.
+  The protocol has no sequence numbers: an answer that comes after its attempt was given up looks like that of
+  the next attempt. So for some time after an attempt that went unanswered, answerMayBeStale() is true, and an
+  answer shows that the device took some request of late, perhaps not the last one. A caller that has to know
+  then reads back what it wrote. An answer of the wrong length is never taken.
 
   All of them throw vpException (ioError) where no valid answer came by the deadline, where the line is gone,
   or where the device answers with an error.
@@ -61,7 +61,7 @@ public:
                  double deadline);
 
   //! Whether an answer to a request given up may still come.
-  bool doubtful() const;
+  bool answerMayBeStale() const;
   //! Waits until it is not, for lateAnswerTime at most. \throw vpException (ioError) where the line is gone.
   void settle();
 
@@ -87,7 +87,7 @@ private:
   std::unique_ptr<vpByteTransport> m_transport;
   vpDynamixelParser m_parser;
   vpDynamixelStatistics m_statistics;
-  double m_doubtUntil = 0; // s, till when an answer to a request given up may come
+  double m_staleUntil = 0; // s, till when an answer to a request given up may come
   double m_answered = 0;   // s
 };
 

@@ -24,7 +24,7 @@ BEGIN_VISP_NAMESPACE
 */
 struct VISP_EXPORT vpDynamixelPacket {
   enum Instruction : std::uint8_t { ping = 0x01, read = 0x02, write = 0x03, status = 0x55 };
-  //! Bits 0 to 6 of a status packet's error. Bit 7, the alert, says that something is wrong with the
+  //! Bits 0 to 6 of a status packet's error. Bit 7, the alert, reports a fault of the
   //! hardware.
   enum Error : std::uint8_t {
     none = 0,

@@ -42,7 +42,7 @@ struct VISP_EXPORT vpBaseLimits {
 
   Safety: a command stays in force until the next one. A base with a watchdog takes each setVelocity() as the
   sign that the control loop is alive, so call it once per control period even if nothing changed; the
-  interface has no thread that would feed the watchdog behind the loop's back. Every way out of a loop,
+  interface has no thread that would serve the watchdog in place of the loop. Every way out of a loop,
   exceptions included, calls stop(); drivers of real bases also do so when they are destroyed.
 
   Errors are vpException: badValue for what the caller gave, ioError where the base cannot be reached, did not

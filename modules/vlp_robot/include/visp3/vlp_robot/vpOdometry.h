@@ -13,9 +13,9 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  What the base itself says of its motion, in its own frame b (x forward, y left, z up). v and w are means
+  The base's own measurement of its motion, in its frame b (x forward, y left, z up). v and w are means
   over the interval from the sample before to \e timestamp: summed over the samples they lose no encoder tick.
-  The first sample of a run only opens the first interval; its v and w mean nothing.
+  The first sample of a run only opens the first interval; its v and w are undefined.
 */
 struct VISP_EXPORT vpOdometry {
   double timestamp = 0; // s, end of the interval, on the clock of the frames' time stamps

@@ -39,7 +39,7 @@ struct VISP_EXPORT vpRobotTurtleBot3Settings {
   void check() const;
 };
 
-//! What the board says of itself.
+//! Status reported by the board.
 struct VISP_EXPORT vpTurtleBot3Status {
   double batteryVoltage = 0; // V; a TurtleBot3's three cells are empty at 11 V
   double batteryCharge = 0;  // share, 0 to 1
@@ -56,9 +56,9 @@ struct VISP_EXPORT vpTurtleBot3Status {
   A TurtleBot3 over its OpenCR board with ROBOTIS' firmware for ROS 2 (DYNAMIXEL protocol 2.0, id 200).
 
   Commands. setVelocity() writes a new heartbeat value and then the command, each confirmed by the board, and
-  returns or throws within commandDeadline + stopDeadline. Where a confirmation is in doubt
-  (vpDynamixelBus::doubtful()) both are read back: the heartbeat's value, another one in each call, says that
-  it is this command.
+  returns or throws within commandDeadline + stopDeadline. Where a confirmation may belong to an
+  earlier request (vpDynamixelBus::answerMayBeStale()), both are read back. The heartbeat's value differs in
+  each call, and so identifies this command.
 
   Watchdog. The board stands 0.5 s after the last change of the heartbeat. Only setVelocity() changes it, no
   thread does: a loop that hangs, a process killed and a cable pulled all stop the base. The first value
@@ -70,9 +70,9 @@ struct VISP_EXPORT vpTurtleBot3Status {
   the wheels in it have turned no further than five times their top speed allows. The board measures every
   20 ms; who asks more often gets the same sample again.
 
-  Errors. After an ioError the base was told to stop as far as it could be told, and takes no command until
-  reconnect() has worked; stop() always tries. The heartbeat rests meanwhile. Where a bus is so bad that a
-  deadline passes, that is an ioError.
+  Errors. On an ioError a stop is sent to the base, as far as the line allows. It takes no command until
+  reconnect() has worked; stop() always tries. The heartbeat is not changed meanwhile. Where a bus is so bad
+  that a deadline passes, that is an ioError.
 
   One thread at a time. The destructor stops the base.
 

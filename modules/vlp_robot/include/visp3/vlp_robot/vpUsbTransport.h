@@ -13,7 +13,7 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! An attached USB device that may be an OpenCR board. Whether it is one, a ping of it tells.
+//! An attached USB device that may be an OpenCR board. A ping shows whether it is one.
 struct VISP_EXPORT vpUsbBoard {
   int bus = 0;
   int address = 0;
@@ -29,7 +29,7 @@ struct VISP_EXPORT vpUsbBoard {
   Sets 1 000 000 baud 8N1 (1200 would reset the board) and of the line state DTR only, before which the board
   sends nothing (RTS would arm its bootloader).
 
-  Needs libusb-1.0 at build time. A build without it has the class and throws at each of its doors.
+  Needs libusb-1.0 at build time. A build without it has the class, and each of its methods throws.
 */
 class VISP_EXPORT vpUsbTransport : public vpByteTransport
 {

@@ -33,7 +33,7 @@ public:
   //! the camera cannot do it, with what it can; (ioError) where it is gone.
   virtual void set(const vpCameraSettings &settings) = 0;
 
-  //! What is in force, read back; left out what this camera does not tell.
+  //! Settings in force, read back; left out what this camera does not report.
   virtual vpCameraSettings settings() const = 0;
 };
 

@@ -23,7 +23,7 @@ struct VISP_EXPORT vpCameraRegion {
 };
 
 /*!
-  What is asked of a camera, or what it says of itself. What is left out stays as the camera has it. Automatic
+  Settings requested from a camera, or reported by it. What is left out stays as the camera has it. Automatic
   exposure and gain are always switched off: they would change stripes from frame to frame.
 */
 struct VISP_EXPORT vpCameraSettings {

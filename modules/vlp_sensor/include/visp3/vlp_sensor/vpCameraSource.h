@@ -34,8 +34,8 @@ struct VISP_EXPORT vpCameraDescription {
   `mindvision://` or `mindvision://SERIAL` | MindVision, the paper's, through the maker's libMVSDK.so where
   that is installed | - |
 
-  A camera that goes away is told once, as an exception of next(); the calls after that wait until it is back,
-  with the settings in force that were asked for. Nothing is ever repeated or made up.
+  The loss of a camera is reported once, as an exception of next(). Later calls wait until it is back, with
+  the settings that were requested. No frame is ever repeated or invented.
 
   \code
   vpCameraSettings settings;
@@ -77,7 +77,7 @@ public:
   //! Changes what is given, now and after each reconnection. \throw vpException as vpCameraDriver::set().
   void set(const vpCameraSettings &settings);
 
-  //! What the camera says is in force; empty while it is lost.
+  //! Settings in force, as the camera reports them; empty while it is lost.
   vpCameraSettings settings() const;
 
   //! Whether it is connected.

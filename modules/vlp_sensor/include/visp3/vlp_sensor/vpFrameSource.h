@@ -43,7 +43,7 @@ public:
   //! Number of frames in all, 0 where it is unknown.
   virtual size_t size() const { return 0; }
 
-  //! One line on what is odd about the frames in all, and no error. Empty where nothing is.
+  //! One line on what is unexpected about all frames together, and no error. Empty where nothing is.
   virtual std::string remark() const { return ""; }
 };
 

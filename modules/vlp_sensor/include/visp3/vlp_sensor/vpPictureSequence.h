@@ -31,8 +31,8 @@ public:
   /*!
     The frames of a recorded or simulated run: `frames.csv` (`timestamp_s,file`, files relative to \e folder),
     in the order of its lines. A time that is not after that of the line above is no error: a recorder that
-    hands over a frame late should not cost the run. remark() names the first such line; whether the frame is
-    of use, whoever takes it decides. \throw vpException where the file is missing, malformed (a time that is
+    hands over a frame late should not cost the run. remark() names the first such line; the caller decides
+    whether to use the frame. \throw vpException where the file is missing, malformed (a time that is
     no finite number) or without frames.
   */
   static vpPictureSequence fromRun(const std::string &folder);

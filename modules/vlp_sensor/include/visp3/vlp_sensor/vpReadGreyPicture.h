@@ -20,7 +20,7 @@ BEGIN_VISP_NAMESPACE
 
   \throw vpException (ioError) with one line that names the file where there is none, it is no picture, it has
   another depth, or it is cut short. OpenCV reads the rest of a JPEG that was cut short as if it were grey,
-  without a word.
+  without a warning.
 */
 VISP_EXPORT void vpReadGreyPicture(const std::string &filename, vpImage<unsigned char> &I);
 

@@ -13,7 +13,7 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  The frames of a camera that takes the sensor's whole picture, made as small as the rig says that software
+  The frames of a camera that takes the sensor's whole picture, made as small as the rig states that software
   made them (`resize` in a rig.yaml). Frames of another size than the sensor's are handed on as they are.
 */
 class VISP_EXPORT vpResizedSource : public vpFrameSource

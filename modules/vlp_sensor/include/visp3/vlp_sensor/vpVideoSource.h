@@ -26,7 +26,7 @@ public:
 
   bool next(vpVlpFrame &frame) override;
 
-  //! As the file's header says it, which for some containers is an estimate.
+  //! As stated in the file's header, which for some containers is an estimate.
   size_t size() const override;
 
 private:

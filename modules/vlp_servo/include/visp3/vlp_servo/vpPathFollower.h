@@ -44,7 +44,7 @@ public:
   */
   vpBaseVelocity follow(const vpHomogeneousMatrix &wMb, double share, double dt);
 
-  //! The last command was cut: what the errors show then is not the wheels' doing.
+  //! The last command was limited: its errors are not disturbances of the wheels.
   void commandWasCut() { m_cut = true; }
 
   const vpReference &reference() const { return m_reference.now(); }

@@ -37,7 +37,7 @@ struct VISP_EXPORT vpReference {
 /*!
   The reference that moves along a path: as fast as asked for where the wheels allow it in that bend, speeding
   up and slowing down in time. It stops at corners and at the end. At a corner its heading turns, and it goes
-  on once somebody has said that the base has turned, too.
+  on after leaveCorner(), once the base has turned, too.
 */
 class VISP_EXPORT vpPathReference
 {

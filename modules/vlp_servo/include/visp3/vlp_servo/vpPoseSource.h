@@ -40,8 +40,8 @@ public:
 };
 
 /*!
-  By the lamps: the pose that the filter had after the newest picture, carried to any later time by what
-  odometry has said since. This is what makes up for the latency of camera and localizer.
+  By the lamps: the pose that the filter had after the newest picture, carried to any later time by
+  the odometry since. This compensates the latency of camera and localizer.
 */
 class VISP_EXPORT vpVlpPose : public vpPoseSource
 {
@@ -61,7 +61,7 @@ private:
   std::deque<vpOdometry> m_recent; // which the filter of the next picture may not know yet
 };
 
-//! What a calibration knows of the errors of odometry. As it comes it is raw.
+//! Calibrated errors of odometry. The default leaves it uncorrected.
 struct VISP_EXPORT vpOdometryCalibration {
   double speedScale = 1; // true speed over that of the wheels
   double turnScale = 1;  // true turn rate over that of the odometry, once without bias
@@ -85,7 +85,7 @@ private:
   vpOdometryCalibration m_calibration;
 };
 
-//! As if the base did what it is told, from a known start on: open loop.
+//! As if the base followed its commands exactly, from a known start on: open loop.
 class VISP_EXPORT vpCommandedPose : public vpPoseSource
 {
 public:

@@ -24,8 +24,8 @@ struct VISP_EXPORT vpServoLog {
   vpTrajectory poses;
   vpTrajectory truth; // may be empty
 
-  //! The header of commands.csv: what the base was told, what the law said, the reference, and the pose that
-  //! the command rests on, whose fields are empty where there was none.
+  //! The header of commands.csv: the command to the base, the output of the control law, the reference, and
+  //! the pose that the command rests on, whose fields are empty where there was none.
   static const std::string columns;
 
   //! Writes these files into an existing folder, each whole or not at all. \throw vpException (ioError).
@@ -37,10 +37,10 @@ struct VISP_EXPORT vpServoLog {
   */
   static vpServoLog load(const std::string &folder);
 
-  //! Off the path, by the truth; empty where it is not known.
+  //! Errors from the path, by the true poses; empty where they are not known.
   std::vector<vpTrackError> trueErrors() const;
-  //! Off the path, as the loop believed.
-  std::vector<vpTrackError> believedErrors() const { return vpTrackErrorsOf(path, run); }
+  //! Errors from the path, by the poses that the loop estimated.
+  std::vector<vpTrackError> estimatedErrors() const { return vpTrackErrorsOf(path, run); }
 };
 
 END_VISP_NAMESPACE

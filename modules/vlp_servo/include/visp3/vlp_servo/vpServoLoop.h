@@ -36,7 +36,7 @@ struct VISP_EXPORT vpServoLoopSettings {
 class VISP_EXPORT vpServoLoop
 {
 public:
-  //! V, of the base's battery, asked once a second or so; empty: nobody knows.
+  //! V, of the base's battery, asked once a second or so; empty: unknown.
   std::function<double()> battery;
   //! Called in each period with what happened and the pictures that became known; false ends the run.
   std::function<bool(const vpServoStep &, const std::vector<vpLocatedPicture> &)> watch;

@@ -42,7 +42,7 @@ struct VISP_EXPORT vpServoRun {
   enum class End {
     arrived, //!< the path was driven to its end
     stopped, //!< somebody wanted it to end
-    failed   //!< something did not allow to go on
+    failed   //!< an error or a safety limit ended it
   };
 
   std::vector<vpServoStep> steps;
@@ -64,13 +64,13 @@ struct VISP_EXPORT vpTrackError {
 
 /*!
   The errors of \e run, one for each of its periods from the first in which the reference moved to that before
-  the last. \param wMb Where the base is at a time (s): the truth, where it is known. It is held against the
+  the last. \param wMb Where the base is at a time (s): the truth, where it is known. It is compared with the
   closest place of the path within 0.3 m of the reference, so that a path may cross itself.
 */
 VISP_EXPORT std::vector<vpTrackError> vpTrackErrorsOf(const vpPath &path, const vpServoRun &run,
                                                       const std::function<vpHomogeneousMatrix(double)> &wMb);
 
-//! The same of the poses that the run itself believed in.
+//! The same of the poses that the run itself estimated.
 VISP_EXPORT std::vector<vpTrackError> vpTrackErrorsOf(const vpPath &path, const vpServoRun &run);
 
 END_VISP_NAMESPACE

@@ -43,7 +43,7 @@ struct VISP_EXPORT vpServoPermit {
 };
 
 /*!
-  Stands between the follower and the base, whatever the follower says.
+  Limits and stops the follower's commands before they reach the base.
 
   Before the first confirmed fix nothing moves. Where the pose becomes uncertain, by its covariance, or
   pictures stay away for long, the base brakes to a stand and waits; once as many pictures as at the start
@@ -68,7 +68,7 @@ public:
   //! that is too far off, or keeps it waiting for too long, does not follow: that ends the run.
   void setOffset(double now, double offset, bool atEnd);
 
-  //! V; what the base says of it.
+  //! V, as the base reports it.
   void setBattery(double voltage) { m_battery = voltage; }
 
   //! What happened outside, and ends the run.
@@ -89,7 +89,7 @@ private:
   vpBaseLimits m_limits;
   bool m_needsPictures;
   vpBaseVelocity m_command;                         // the last one
-  bool m_relocated = false;                         // the latest picture's place is not borne out
+  bool m_relocated = false;                         // the latest picture's place is not confirmed
   int m_confirmed = 0;                              // pictures in a row
   bool m_moving = false;                            // permitted to
   std::optional<double> m_lastPicture, m_waitBegan; // s

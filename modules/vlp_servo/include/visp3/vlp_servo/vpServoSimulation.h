@@ -53,7 +53,7 @@ public:
   //! of range.
   vpServoSimulation(const vpScenario &scenario, std::uint64_t seed,
                     const vpServoSimulationSettings &settings);
-  //! The same with a localizer that believes something else of rig or lamps than the scenario says it does.
+  //! The same with a localizer that has another rig or other lamps than the scenario's.
   vpServoSimulation(const vpScenario &scenario, std::uint64_t seed, const vpServoSimulationSettings &settings,
                     vpVlpLocalizer localizer);
   ~vpServoSimulation() override;
@@ -85,8 +85,8 @@ private:
   The same world in real time, as a real robot and a real camera are: a base and a source of frames that two
   threads use side by side, on the host's clock.
 
-  next() waits for the end of a picture's readout, as a camera does. Pictures that were read out while nobody
-  asked are left out but for the newest one.
+  next() waits for the end of a picture's readout, as a camera does. Of the pictures that were read out
+  between two calls only the newest one is given.
 */
 class VISP_EXPORT vpLiveSimulation : public vpMobileBase, public vpFrameSource
 {
@@ -105,7 +105,7 @@ public:
 
   //! True pose of the base at \e time, s, up to now.
   vpHomogeneousMatrix wMb(double time);
-  //! What the robot believes of its camera and of the lamps.
+  //! Camera and lamps as the robot's files state them.
   const vpVlpRig &rig() const { return m_simulation->rig(); }
   const vpLampMap &map() const { return m_simulation->map(); }
 

@@ -67,7 +67,7 @@ public:
   //! Share of a square's side that shines, about its x axis: less than 1 of a tube only.
   double strip() const { return m_strip; }
 
-  //! Brightness at a place, 0 to 1; the outline is not its business.
+  //! Brightness at a place, 0 to 1; regardless of the outline.
   double at(const Eigen::Vector2d &place) const
   {
     return m_pattern ? m_pattern(place) : std::abs(place.y()) <= m_strip ? 1 : 0;

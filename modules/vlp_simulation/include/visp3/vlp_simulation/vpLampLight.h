@@ -14,7 +14,7 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   The light that a lamp gives over time, integrated over an exposure in closed form. The lamp runs on a clock
-  of its own: phase and rate are nobody's but its own.
+  of its own: phase and rate are independent of all others.
 */
 class VISP_EXPORT vpLampLight
 {

@@ -26,7 +26,7 @@ public:
   //! s, after which it stands still.
   virtual double duration() const = 0;
 
-  //! What the wheels said up to the latest time asked for; nothing of a robot that is put in places.
+  //! Wheel odometry up to the latest time asked for; nothing of a robot that is put in places.
   virtual std::vector<vpOdometry> odometry() const { return {}; }
 };
 

@@ -19,11 +19,11 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  What a scenario file says: the files that a robot believes, where the world differs from them, how the robot
-  moves, and what is left to chance. A seed makes a vpSimulation of it.
+  What a scenario file states: the robot's files, where the simulated world differs from them, how the robot
+  moves, and what is drawn at random. A seed makes a vpSimulation of it.
 */
 struct VISP_EXPORT vpScenario {
-  //! Where the camera and the robot differ from the rig file. Added to, or multiplied with, what that says.
+  //! Where the camera and the robot differ from the rig file. Added to, or multiplied with, its values.
   struct Deviation {
     Eigen::Vector2d tilt = Eigen::Vector2d::Zero();           // rad, the camera turned about x and y of b
     Eigen::Vector2d principalPoint = Eigen::Vector2d::Zero(); // px of the sensor
@@ -66,13 +66,13 @@ struct VISP_EXPORT vpScenario {
     vpSimulatorTurtleBot3Settings robot;
   };
 
-  vpVlpRig rig;  // as the robot believes; its exposure already in whole lines where the camera has it so
-  vpLampMap map; // as the robot believes
+  vpVlpRig rig;  // as the robot's files state; its exposure already in whole lines where the camera has it so
+  vpLampMap map; // as the robot's files state
   Deviation deviation;
   Draw draw;
   vpSimulatedCamera camera; // all but its rig
   vpSimulatedScene scene;   // all but its lamps
-  std::vector<Lamp> lamps;  // those of the map and those that no map knows
+  std::vector<Lamp> lamps;  // those of the map and those in no map
   std::vector<SecondImage> secondImages;
   Motion motion;
   double frameRate = 12; // Hz
@@ -87,8 +87,8 @@ struct VISP_EXPORT vpScenario {
   /*!
     Draws the errors of a typical rig in place of the scenario's own: standard deviations of 0.15 degree of
     roll and of pitch, 2 mm of each lamp's x, y and z, 1 px of the sensor's principal point, 0.3 % of the
-    focal length, 0.05 % of the row time. The robot knows how good its files are, not by how much they err:
-    rig and map state these standard deviations.
+    focal length, 0.05 % of the row time. The robot's rig and map state these standard
+    deviations, not the errors drawn.
   */
   void useTypicalRig();
 

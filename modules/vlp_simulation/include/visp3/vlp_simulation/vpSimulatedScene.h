@@ -15,7 +15,7 @@
 
 BEGIN_VISP_NAMESPACE
 
-//! A lamp that hangs there and shines straight down, whether a map knows it or not.
+//! A lamp that hangs there and shines straight down, in a map or not.
 struct VISP_EXPORT vpSimulatedLamp {
   vpLamp lamp;        // its size must be known
   vpLampLight light;  // over time

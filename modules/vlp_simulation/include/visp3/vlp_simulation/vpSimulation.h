@@ -15,7 +15,7 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  A scenario with everything that is left to chance drawn: a world with ground truth, and the frames that a
+  A scenario with all its random values drawn: a world with ground truth, and the frames that a
   camera in it delivers. The same scenario and seed give the same frames to the last byte on the same machine.
 
   \code
@@ -36,7 +36,7 @@ public:
 
   bool next(vpVlpFrame &frame) override;
   size_t size() const override { return m_scenario.frames; }
-  //! Leaves the next frame out, undrawn, as a camera does whose frames nobody fetches.
+  //! Leaves the next frame out, undrawn, as a camera does whose frames are not fetched.
   void skip() { ++m_next; }
 
   //! True pose of the base in the map at \e time, s from the start of the run.
@@ -44,7 +44,7 @@ public:
   //! Wheel odometry up to the newest frame; empty for a robot that is put in places.
   std::vector<vpOdometry> odometry() const { return m_motion->odometry(); }
 
-  //! What the robot believes of its camera and of the lamps.
+  //! Camera and lamps as the robot's files state them.
   const vpVlpRig &rig() const { return m_scenario.rig; }
   const vpLampMap &map() const { return m_scenario.map; }
   //! What is true.

@@ -31,7 +31,7 @@ struct VISP_EXPORT vpSimulatorTurtleBot3Settings {
   double floorTiltX = 0; // rad
   double floorTiltY = 0; // rad
 
-  // Geometry: what the kinematics of the model do not know.
+  // Geometry: deviations from the kinematics of the model.
   double leftRadiusError = 0;  // share: the true radius is (1 + error) times the model's
   double rightRadiusError = 0; // share
   double separationError = 0;  // share

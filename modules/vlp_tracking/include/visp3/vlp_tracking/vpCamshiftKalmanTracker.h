@@ -13,29 +13,28 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  The improved Camshift-Kalman tracker of section 2.1.2 of the paper: Camshift says where the target is in a
-  picture, the Bhattacharyya coefficient of what is there and the target says how far to believe it, and a
-  Kalman filter of constant velocity makes the estimate of both.
+  The improved Camshift-Kalman tracker of section 2.1.2 of the paper: Camshift measures where the target is in
+  a picture. The Bhattacharyya coefficient of that window and the target sets the measurement noise. A Kalman
+  filter of constant velocity makes the estimate of both.
 
   A target is known by its histogram: of grey values in grey pictures, of hue and saturation in colour
-  pictures. What its surroundings have as much of does not count. In each picture:
+  pictures. Values that are as frequent in its surroundings do not count. In each picture:
   1. The Kalman filter predicts the window.
-  2. Mean shift moves it over the back projection of the histogram until it rests.
-  3. The Bhattacharyya coefficient rho compares what it holds with the target. Below \e threshold the eight
-     windows around the prediction are tried, and the best one counts; then a search window that is as
-     large as the prediction is in doubt, and grows from frame to frame while the target is not seen.
+  2. Mean shift moves it over the back projection of the histogram until it converges.
+  3. The Bhattacharyya coefficient rho compares its content with the target. Below \e threshold the eight
+     windows around the prediction are tried, and the best one counts. Then comes a search window as large
+     as the prediction's uncertainty, which grows from frame to frame while the target is not seen.
   4. Seen, the coefficient becomes the measurement noise, measurementSigma(), of the Kalman filter's
-     correction; the window takes over the size of what is in it; where all is trusted, the histogram is
-     refreshed slowly. Not seen, the prediction stands, and is less certain with each frame.
+     correction; the window adapts to the size of its content. Where the sighting is as expected, the
+     histogram is refreshed slowly. Not seen, the prediction stands, and its variance grows with each frame.
 
-  The paper leaves open how far a steady target should be believed to go on steadily. Here the process noise
-  follows the target: an innovation that neither the prediction's doubt nor the measurement's explains raises
-  it, and it calms down while there is none. The measurement's doubt grows, beyond rho, where a part seems to
-  be hidden or another target near (vpUsualSight in the sources). So half a target at an obstacle's edge, or a
-  similar one that passes, does not pull the estimate along.
+  The paper leaves the process noise open. Here it follows the target: an innovation beyond the variances of
+  prediction and measurement raises it, and it decays while there is none. The measurement noise grows, beyond
+  rho, where a part seems to be hidden or another target near (vpExpectedAppearance in the sources). So half a
+  target at an obstacle's edge, or a similar one that passes, does not pull the estimate along.
 
-  The unit of time is one frame: with a frame dropped, the target seems to jump, which the search covers. What
-  has left the picture is waited for where it left, half a window outside.
+  The unit of time is one frame: with a frame dropped, the target seems to jump, which the search covers. A
+  target that has left the picture is searched for where it left, half a window outside.
 
   A target whose histogram is that of its surroundings cannot be told from them; the window then stays about
   where it is, and similarity() means little. Pictures of colours and grey ones are not to be mixed. A window
@@ -45,7 +44,7 @@ class VISP_EXPORT vpCamshiftKalmanTracker : public vpTargetTracker
 {
 public:
   double searchMargin = 0.15;   // on each side of the window, as a share of it, for mean shift
-  double convergence = 0.004;   // share of the window, the move at which mean shift rests; 0.2 px at least
+  double convergence = 0.004;   // share of the window, the move at which mean shift stops; 0.2 px at least
   int maxIterations = 15;       // of mean shift
   double threshold = 0.6;       // Bhattacharyya coefficient below which the target is not seen
   double regainThreshold = 0.7; // the same for what is found elsewhere, or after the target was not seen
@@ -56,9 +55,9 @@ public:
   double steadiness = 0.005;    // window sizes per frame^2, smallest change of velocity reckoned with
   double sizeRate = 0.2;        // share of a change of size followed in one frame
   double maxSizeChange = 0.05;  // of the window's sides, in one frame
-  double trusted = 0.85;        // coefficient, and trust, from which the model is refreshed
-  double refreshRate = 0.2;     // share of the model replaced at each refresh
-  int refreshInterval = 5;      // trusted frames
+  double refreshThreshold = 0.85; // coefficient, and plausibility, from which the model is refreshed
+  double refreshRate = 0.2;       // share of the model replaced at each refresh
+  int refreshInterval = 5;        // frames above refreshThreshold
 
   vpCamshiftKalmanTracker();
   ~vpCamshiftKalmanTracker() override;
@@ -68,7 +67,7 @@ public:
     its function.
     \f[ \sigma(\rho) = noiseFloor + noiseScale \; s \; \frac{1 - \rho}{\rho} \f]
     with the window's size s, the root of its area; infinite (no correction) below \e threshold. In a
-    correction rho is taken as a share of what it usually is.
+    correction rho is taken relative to its running mean.
   */
   double measurementSigma(double rho) const;
 

@@ -16,26 +16,26 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  Follows all lamps at once. Each has a target tracker (improved Camshift-Kalman, or another), which hands
-  over the window in which outline, stripes and LED-ID are looked for; what the stripes of its frames say
-  together tells which lamp it is.
+  Follows all lamps at once. Each has a target tracker (improved Camshift-Kalman, or another), which gives
+  the window in which outline, stripes and LED-ID are searched for. The stripes of all its frames together
+  identify the lamp.
 
-  A lamp that `sure` frames agree on is looked for by a glance (vpLedDetector::glance()), which takes what it
-  finds for that lamp only where it is as before in every respect: first where the robot's motion says, and
-  where it is there its target tracker need not look; else where the target tracker has it. What no glance
-  finds is looked at with care, and so are windows that show any other light.
+  A lamp that `sure` frames agree on is reacquired (vpLedDetector::reacquire()), a quick check that succeeds
+  only where the lamp is as before in every respect. It is tried first at the place that the robot's motion
+  predicts; if it succeeds there, the target tracker is not run. Else it is tried at the target tracker's
+  place. Where it fails, the full detection runs, and so it does in windows that show any other light.
 
-  New lamps are born of a search that covers a strip of each frame, so that its cost is bounded; of the whole
-  frame only where fewer lamps than `needed` were or are in sight. One that is not seen for `patience` dies,
-  and so does one that left the picture. Stripes that contradict what a lamp has shown before are another
-  lamp's: it begins anew, with a new number and without an id, until its own stripes give it one. So ids are
-  never handed from lamp to lamp where two cross or one is replaced.
+  New lamps come from a search that covers a strip of each frame, so that its cost is bounded. It covers the
+  whole frame only where fewer lamps than `needed` were or are in sight. A lamp that is not seen for
+  `patience` is dropped, and so is one that left the picture. Stripes that contradict a lamp's earlier ones
+  are taken for another lamp's: it starts again, with a new number and without an id, until its own stripes
+  give it one. So ids are never passed from lamp to lamp where two cross or one is replaced.
 
-  A picture that shows all lamps as the frame before did, pixel for pixel, has come twice: sensors are never
-  that quiet. Its stripes say nothing new, so that they do not count again.
+  A picture that shows all lamps as the frame before did, pixel for pixel, is a repeated one: a sensor has
+  noise. Its stripes are no new measurement and do not count again.
 
-  Steady regions (windows, lamps without stripes) are seen where the search comes by, and not followed; for a
-  while it passes over where they are, moved along with the lamps.
+  Steady regions (windows, lamps without stripes) are found by the search and not followed. For a while their
+  places are left out of the search, moved along with the lamps.
 
   \code
   vpLampTracker tracker(rig, map);
@@ -50,20 +50,20 @@ public:
   vpLedDetector detector;
   vpTargetTracker::Method method = vpTargetTracker::Method::camshiftKalman;
   double patience = 1;      // s
-  double margin = 0.7;      // of a lamp's extent, by which it is looked for beyond its window on each side
+  double margin = 0.7;      // of a lamp's extent, by which the search goes beyond its window on each side
   double searchShare = 0.2; // of the picture that is searched for new lamps in each frame
   size_t needed = 2;        // lamps in sight with an id, below which all of it is
-  unsigned int sure = 5;    // frames that agree on a lamp, after which a glance does to find it again
-  double steadiness = 2;    // s, for which a region that tells nothing of any lamp is not looked at again
+  unsigned int sure = 5;    // frames that agree on a lamp, after which it may be reacquired
+  double steadiness = 2;    // s, for which a region that is no lamp is not searched again
 
   vpLampTracker(const vpVlpRig &rig, const vpLampMap &map);
   ~vpLampTracker();
   vpLampTracker(vpLampTracker &&) noexcept;
 
   /*!
-    Every lamp-like region that was looked at, the one with the largest lit area first. Their features are
-    those of all frames of the lamp together, `track` its number. \param expected Where else lamps are to be
-    looked for, px: what is known of the robot's motion says so. \throw vpException (dimensionError) where the
+    Every lamp-like region that was examined, the one with the largest lit area first. Their features are
+    those of all frames of the lamp together, `track` its number. \param expected Predicted windows, px, from
+    the robot's motion, in which lamps are searched for as well. \throw vpException (dimensionError) where the
     picture has not the size that the rig states; (badValue) where its time is not finite, or not later than
     that of the one before, or where a window that counts has no finite corners.
   */
@@ -76,8 +76,8 @@ public:
   //! Lamps that are followed, seen in the last frame or not.
   size_t tracks() const;
 
-  //! Where lamps were looked for in the last frame, px: around each that is followed, where they were
-  //! expected, and the strip whose turn it was. Windows may reach out of the picture. Empty: in all of it.
+  //! Windows searched in the last frame, px: around each lamp that is followed, the predicted ones, and the
+  //! strip of this frame. Windows may reach out of the picture. Empty: all of it was searched.
   const std::vector<vpRect> &searched() const { return m_searched; }
 
 private:
@@ -93,16 +93,17 @@ private:
   void addObservation(const vpLampObservation &seen);
   void sortByArea();
   vpRect strip();
-  bool glanceAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place);
-  bool glanceAsExpected(Track &track, const vpImage<unsigned char> &I, const std::vector<vpRect> &expected);
-  void glance(const vpImage<unsigned char> &I);
+  bool reacquireAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place);
+  bool reacquireAsExpected(Track &track, const vpImage<unsigned char> &I,
+                           const std::vector<vpRect> &expected);
+  void reacquire(const vpImage<unsigned char> &I);
   void search(const vpVlpFrame &frame);
   void searchAll(const vpVlpFrame &frame);
   size_t lampsInSight() const;
   void moveSteady(double time);
   void rememberSteady(const vpLampObservation &seen, double time);
   void assign();
-  void followGlanced(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
+  void followReacquired(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
   void setRight(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
   void follow(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
   std::unique_ptr<vpTargetTracker> targetAt(const vpImage<unsigned char> &I, const vpRect &box) const;

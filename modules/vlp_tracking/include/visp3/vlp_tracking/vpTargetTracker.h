@@ -55,15 +55,15 @@ public:
   bool track(const vpImage<vpRGBa> &I);
 
   /*!
-    Sets right what something else saw better in the picture that track() was given last: the target fills
+    Corrects the target's place in the picture last given to track(): another detector found that it fills
     \e window there. Its motion so far is kept where the method knows it.
     \throw vpException as initTracking() and track().
   */
   void correct(const vpImage<unsigned char> &I, const vpRect &window);
 
   /*!
-    Goes on to the next picture without a look at it: something else saw that the target fills \e window
-    there. False where the method does not know how to; then the picture is for track().
+    Goes on to the next picture without processing it: another detector found that the target fills
+    \e window there. False where the method cannot do so; then call track() with the picture.
     \throw vpException notInitialized: before initTracking().
   */
   bool goOn(const vpRect &window);
@@ -75,14 +75,14 @@ public:
   //! The middle of the whole estimated window, which lies outside the picture where most of the window does.
   vpImagePoint center() const { return m_estimate.getCenter(); }
 
-  //! How much the likest that was found in the last picture looks like the target: 0 (nothing) to 1.
+  //! Similarity of the best candidate in the last picture to the target: 0 (none) to 1.
   double similarity() const { return m_similarity; }
 
   void display(const vpImage<unsigned char> &I, const vpColor &color, unsigned int thickness = 1) const;
   void display(const vpImage<vpRGBa> &I, const vpColor &color, unsigned int thickness = 1) const;
 
 protected:
-  //! What a method knows after a picture.
+  //! Result of a method for one picture.
   struct Sighting {
     vpRect window; // whole, in the picture or not
     double similarity = 0;

@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#include "vpDoubtedMap.h"
+#include "vpInflatedMap.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,9 +30,9 @@ double shown(const vpBundleResult &result, const vpLampMap &map, const std::vect
 }
 } // namespace
 
-vpBundleResult vpUnderDoubtedMap(const vpBundleResult &found, const vpLampBundle &bundle,
-                                 const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
-                                 const vpLampMap &map)
+vpBundleResult vpSolveWithInflatedMap(const vpBundleResult &found, const vpLampBundle &bundle,
+                                      const std::vector<vpLampRun> &runs, const vpVlpRig &rig,
+                                      const vpLampMap &map)
 {
   std::vector<size_t> held;
   for (size_t k = 0; k < bundle.lampSigma.size(); ++k) {
@@ -47,19 +47,19 @@ vpBundleResult vpUnderDoubtedMap(const vpBundleResult &found, const vpLampBundle
   static const int rounds = 8;
   static const double first = 0.005, nearly = 0.2; // m; a share
   vpBundleResult result = found;
-  vpLampBundle doubting = bundle;
+  vpLampBundle inflated = bundle;
   double sigma = first;
   for (int round = 0; round < rounds; ++round) {
     for (const size_t k : held) {
-      doubting.lampSigma[k] = sigma;
+      inflated.lampSigma[k] = sigma;
     }
-    vpBundleResult doubted = doubting.solve(runs, rig, map);
-    if (!doubted.valid) {
+    vpBundleResult solution = inflated.solve(runs, rig, map);
+    if (!solution.valid) {
       break;
     }
-    result = doubted;
-    result.mapDoubt = sigma;
-    result.doubted = held;
+    result = solution;
+    result.inflatedLampSigma = sigma;
+    result.inflatedLamps = held;
     const double next = shown(result, map, held, sigma);
     if (std::abs(std::log(next / sigma)) < nearly) {
       break;

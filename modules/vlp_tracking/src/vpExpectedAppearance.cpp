@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#include "vpUsualSight.h"
+#include "vpExpectedAppearance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,13 +32,13 @@ double crowdOf(const vpTargetCandidate &candidate)
 }
 } // namespace
 
-void vpUsualSight::Usual::add(double value, double rate)
+void vpExpectedAppearance::RunningMean::add(double value, double rate)
 {
   spread += rate * (std::abs(value - mean) - spread);
   mean += rate * (value - mean);
 }
 
-void vpUsualSight::begin(const vpTargetCandidate &given)
+void vpExpectedAppearance::begin(const vpTargetCandidate &given)
 {
   static const double spread = 0.01, least = 1e-3;
   m_coefficient = {1, spread};
@@ -48,7 +48,7 @@ void vpUsualSight::begin(const vpTargetCandidate &given)
   m_firstDown = down(given);
 }
 
-double vpUsualSight::trust(const vpTargetCandidate &candidate) const
+double vpExpectedAppearance::plausibility(const vpTargetCandidate &candidate) const
 {
   static const double whole = 0.98; // less of it visible: the picture ends, not the target
   const double likeness = (candidate.coefficient + m_coefficient.margin()) / m_coefficient.mean;
@@ -58,33 +58,33 @@ double vpUsualSight::trust(const vpTargetCandidate &candidate) const
          std::max(1.0, crowded);
 }
 
-bool vpUsualSight::asUsual(const vpTargetCandidate &candidate) const
+bool vpExpectedAppearance::asExpected(const vpTargetCandidate &candidate) const
 {
   static const double enough = 0.98;
-  return trust(candidate) >= enough;
+  return plausibility(candidate) >= enough;
 }
 
-double vpUsualSight::growthAcross(const vpTargetCandidate &candidate) const
+double vpExpectedAppearance::growthAcross(const vpTargetCandidate &candidate) const
 {
   return m_firstAcross > 0 && across(candidate) > 0 ? across(candidate) / m_firstAcross : 1;
 }
 
-double vpUsualSight::growthDown(const vpTargetCandidate &candidate) const
+double vpExpectedAppearance::growthDown(const vpTargetCandidate &candidate) const
 {
   return m_firstDown > 0 && down(candidate) > 0 ? down(candidate) / m_firstDown : 1;
 }
 
-bool vpUsualSight::changedAlike(const vpTargetCandidate &candidate) const
+bool vpExpectedAppearance::changedAlike(const vpTargetCandidate &candidate) const
 {
   static const double apart = 0.5; // as a share of their mean
   const double u = std::log(growthAcross(candidate)), v = std::log(growthDown(candidate));
   return u * v > 0 && std::abs(u - v) < apart * std::abs(u + v) / 2;
 }
 
-void vpUsualSight::learn(const vpTargetCandidate &seen)
+void vpExpectedAppearance::learn(const vpTargetCandidate &seen)
 {
-  static const double usual = 0.1, unusual = 0.02; // a frame
-  const double rate = asUsual(seen) ? usual : unusual;
+  static const double expected = 0.1, unexpected = 0.02; // a frame
+  const double rate = asExpected(seen) ? expected : unexpected;
   m_coefficient.add(seen.coefficient, rate);
   m_crowd.add(crowdOf(seen), rate);
   m_extent.add(extentOf(seen), rate);

@@ -2,8 +2,8 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#ifndef vpUsualSight_h
-#define vpUsualSight_h
+#ifndef vpExpectedAppearance_h
+#define vpExpectedAppearance_h
 
 #include <visp3/core/vpRect.h>
 
@@ -23,22 +23,23 @@ struct vpTargetCandidate {
 };
 
 /*!
-  How the target usually looks, once it is found, and how far a sighting can be trusted that does not look so.
+  How the target is expected to look once it is found: running means of the sightings so far; and how
+  plausible a sighting is that does not look so.
 */
-class vpUsualSight
+class vpExpectedAppearance
 {
 public:
   void begin(const vpTargetCandidate &given);
 
   /*!
     0 to 1. A part of the target may be hidden: the rest is less alike, and before that, as long as the window
-    can move along with the rest, less extended. Or more of its kind than usual is near, where another target
-    may pass, and what was found may lie between the two.
+    can move along with the rest, less extended. Or more of its kind than expected is near, where another
+    target may pass, and what was found may lie between the two.
   */
-  double trust(const vpTargetCandidate &candidate) const;
+  double plausibility(const vpTargetCandidate &candidate) const;
 
-  //! Trusted, and as usual in all: nothing seems to be hidden, or near.
-  bool asUsual(const vpTargetCandidate &candidate) const;
+  //! Plausible, and as expected in all: nothing seems to be hidden, or near.
+  bool asExpected(const vpTargetCandidate &candidate) const;
 
   /*!
     Whether it changed its size along both axes alike, as what comes nearer or goes farther does. What hides a
@@ -50,21 +51,21 @@ public:
   double growthAcross(const vpTargetCandidate &candidate) const;
   double growthDown(const vpTargetCandidate &candidate) const;
 
-  //! What comes on slowly and stays is usual after all.
+  //! Follows what changes slowly and stays.
   void learn(const vpTargetCandidate &seen);
 
 private:
-  //! Running mean of a figure, and of how far it strays from it: stripes that change their phase make some.
-  struct Usual {
+  //! Running mean of a figure, and of its absolute deviation: stripes that change their phase make some.
+  struct RunningMean {
     double mean = 0, spread = 0;
 
     void add(double value, double rate);
     double margin() const { return 2 * spread; }
   };
 
-  Usual m_coefficient;
-  Usual m_crowd;                             // mass in the search window for each of the window
-  Usual m_extent;                            // spread of the back projection, in window sizes
+  RunningMean m_coefficient;
+  RunningMean m_crowd;                       // mass in the search window for each of the window
+  RunningMean m_extent;                      // spread of the back projection, in window sizes
   double m_firstAcross = 0, m_firstDown = 0; // the same at the start, along each axis
 };
 

@@ -34,7 +34,7 @@ vpLampOutline outlineOf(const vpLampPicture &picture)
   return nearest;
 }
 
-//! Whether the outline is the lamp's; or, of a \e bright companion, says how far from it it may be.
+//! Whether the outline is the lamp's; or, with a \e bright ghost image, states how far from it it may be.
 void expectTheLamp(const vpLampOutline &outline, const vpPaintedLamp &lamp, bool bright)
 {
   const Eigen::Vector2d error = outline.centre - lamp.centre;
@@ -49,7 +49,7 @@ void expectTheLamp(const vpLampOutline &outline, const vpPaintedLamp &lamp, bool
 }
 } // namespace
 
-TEST(Companions, GhostOfALampDoesNotMoveIt)
+TEST(GhostImages, GhostOfALampDoesNotMoveIt)
 {
   for (const double share : {0.04, 0.1, 0.2, 0.3})
     for (const double apart : {0.25, 0.5, 1.0}) // radii
@@ -65,7 +65,7 @@ TEST(Companions, GhostOfALampDoesNotMoveIt)
         }
 }
 
-TEST(Companions, RimThatALampLightsIsNoPartOfIt)
+TEST(GhostImages, RimThatALampLightsIsNoPartOfIt)
 {
   for (const double share : {0.05, 0.1, 0.2})
     for (const double aside : {0.0, 0.1, 0.17}) // radii

@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// A lamp that was seen before is found by a glance where it is the same, and only there.
+// A lamp that was seen before is reacquired where it is the same, and only there.
 
 #include <cmath>
 #include <functional>
@@ -49,7 +49,7 @@ vpLampPicture picture(const std::vector<vpPaintedLamp> &lamps, unsigned int seed
 }
 
 //! A detector and a lamp that it has seen.
-class Glance : public testing::Test
+class Reacquisition : public testing::Test
 {
 protected:
   void SetUp() override
@@ -59,12 +59,12 @@ protected:
     before = detector.observations().front();
   }
 
-  //! What a glance makes of a picture.
+  //! What reacquire() makes of a picture.
   bool finds(const vpImage<unsigned char> &I, const Eigen::Vector2d &expected)
   {
     now = before;
     now.outline.centre = expected;
-    return detector.glance(I, now);
+    return detector.reacquire(I, now);
   }
   //! ... of one with that lamp alone, where it is expected.
   bool finds(const vpPaintedLamp &other) { return finds(picture({other}, 2).render(), other.centre); }
@@ -73,7 +73,7 @@ protected:
   vpLampObservation before, now;
 };
 
-TEST_F(Glance, SeesWhatTheDetectorSees)
+TEST_F(Reacquisition, SeesWhatTheDetectorSees)
 {
   for (unsigned int seed = 1; seed < 20; ++seed) {
     vpPaintedLamp moved = lamp(120.3 + 2.3 * seed, 110.6 - 0.7 * seed);
@@ -93,7 +93,7 @@ TEST_F(Glance, SeesWhatTheDetectorSees)
 }
 
 //! A robot that turns or brakes: lamps are not where they were expected. Whatever lines are lit.
-TEST_F(Glance, FindsItsWayFromPixelsAway)
+TEST_F(Reacquisition, FindsItsWayFromPixelsAway)
 {
   for (const double frequency : {1042., 2000., 5200.}) {
     for (unsigned int seed = 1; seed < 12; ++seed) {
@@ -117,7 +117,7 @@ TEST_F(Glance, FindsItsWayFromPixelsAway)
   }
 }
 
-TEST_F(Glance, ErrorsAreAsLargeAsTheySay)
+TEST_F(Reacquisition, ErrorsAreAsLargeAsTheySay)
 {
   double squares = 0;
   static const int trials = 100;
@@ -134,7 +134,7 @@ TEST_F(Glance, ErrorsAreAsLargeAsTheySay)
   EXPECT_GT(squares, 0.3);
 }
 
-TEST_F(Glance, TakesNoOtherLampForIt)
+TEST_F(Reacquisition, TakesNoOtherLampForIt)
 {
   vpPaintedLamp other = lamp();
   other.frequency = 2000 + 40; // an eighth of a period over the lamp
@@ -156,13 +156,13 @@ TEST_F(Glance, TakesNoOtherLampForIt)
   EXPECT_FALSE(finds(other));
 }
 
-TEST_F(Glance, SeesNothingWhereThereIsNothing)
+TEST_F(Reacquisition, SeesNothingWhereThereIsNothing)
 {
   EXPECT_FALSE(finds(picture({}, 3).render(), before.outline.centre));
   EXPECT_FALSE(finds(picture({lamp(240, 150)}).render(), before.outline.centre));
 }
 
-TEST_F(Glance, LeavesPartsOfALampToTheDetector)
+TEST_F(Reacquisition, LeavesPartsOfALampToTheDetector)
 {
   // Somebody's head: dark, across a third of the lamp.
   vpImage<unsigned char> I = picture({lamp()}).render();
@@ -176,7 +176,7 @@ TEST_F(Glance, LeavesPartsOfALampToTheDetector)
   EXPECT_FALSE(finds(lamp(120, 239 - radius)));
 }
 
-TEST_F(Glance, LampsThatLeaveThePictureAreNotFollowedOutOfIt)
+TEST_F(Reacquisition, LampsThatLeaveThePictureAreNotFollowedOutOfIt)
 {
   for (double v = 239 - 1.3 * radius; v < 250; v += 1) {
     const vpImage<unsigned char> I = picture({lamp(120, v)}).render();
@@ -186,7 +186,7 @@ TEST_F(Glance, LampsThatLeaveThePictureAreNotFollowedOutOfIt)
   }
 }
 
-TEST_F(Glance, TakesOnlyWhatWasUnderstood)
+TEST_F(Reacquisition, TakesOnlyWhatWasUnderstood)
 {
   const vpLampObservation understood = before;
   const std::vector<std::function<void()>> spoilers = {

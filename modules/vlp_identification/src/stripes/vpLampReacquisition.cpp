@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#include "vpLampGlance.h"
+#include "vpLampReacquisition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 BEGIN_VISP_NAMESPACE
 
-bool vpLampGlance::suits(const vpLampObservation &before)
+bool vpLampReacquisition::suits(const vpLampObservation &before)
 {
   static const double certain = 0.005, explained = 0.01;
   const vpStripeFeatures &features = before.features;
@@ -20,15 +20,15 @@ bool vpLampGlance::suits(const vpLampObservation &before)
          features.frequencySigma < certain * features.frequency && features.misfit < explained;
 }
 
-bool vpLampGlance::find(const vpLinePicture &picture, const vpLineTiming &timing,
-                        const vpLampObservation &before, double shapeSigma)
+bool vpLampReacquisition::find(const vpLinePicture &picture, const vpLineTiming &timing,
+                               const vpLampObservation &before, double shapeSigma)
 {
   return m_outline.find(picture, timing, before.outline, before.blur, shapeSigma) &&
          sameStripes(picture, timing, before.features);
 }
 
 //! Of the middle of each line, of which the envelope makes up for what is not even.
-void vpLampGlance::readProfile(const vpLinePicture &picture, const vpLineTiming &timing)
+void vpLampReacquisition::readProfile(const vpLinePicture &picture, const vpLineTiming &timing)
 {
   static const double inside = 0.7; // of a chord
   const vpOutlineFit &fit = m_outline.fit();
@@ -69,8 +69,8 @@ void vpLampGlance::readProfile(const vpLinePicture &picture, const vpLineTiming 
   }
 }
 
-bool vpLampGlance::sameStripes(const vpLinePicture &picture, const vpLineTiming &timing,
-                               const vpStripeFeatures &before)
+bool vpLampReacquisition::sameStripes(const vpLinePicture &picture, const vpLineTiming &timing,
+                                      const vpStripeFeatures &before)
 {
   static const double gate = 4;               // standard deviations
   static const double much = 0.015, more = 2; // misfit; times that of before

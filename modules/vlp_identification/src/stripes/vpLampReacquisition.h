@@ -2,8 +2,8 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#ifndef vpLampGlance_h
-#define vpLampGlance_h
+#ifndef vpLampReacquisition_h
+#define vpLampReacquisition_h
 
 #include <vector>
 
@@ -17,14 +17,14 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  A lamp that was wholly understood, looked at again: its outline is fitted from where it is expected, and its
-  stripes are compared with those it had. What is not as before in any respect is not seen at all, and is for
-  vpLedDetector to look at with care.
+  Quick check of a lamp that was fully recognised before: its outline is fitted from where it is expected, and
+  its stripes are compared with those it had. A lamp that differs in any respect is not found here, and is
+  left to vpLedDetector's full detection.
 */
-class vpLampGlance
+class vpLampReacquisition
 {
 public:
-  //! Whether a lamp was seen well enough for a glance to find it again.
+  //! Whether a lamp was seen well enough to be reacquired.
   static bool suits(const vpLampObservation &before);
 
   /*!
