@@ -33,18 +33,18 @@ public:
   };
 
   /*!
-    \param lit Of each line of the picture, the light of the lamp as a share of its most. \param seed A part
-    of the lamp. \param others Boxes of other lamps, whose light does not count. \return The light that blinks
-    like that and hangs together with the seed, dark patches of a quarter of the seed's size apart; nothing
-    where that has no shape of a lamp.
-  */
-  /*!
-    How much of a region's light keeps to the lines on which the lamp is lit: 1 all of what does blink so, 0
-    no more of it than chance has.
+    How much of the light in \e box, above that of its darkest lines, is on the lines on which the lamp is
+    lit: 1 as much as if all of it blinked so, 0 no more than chance has. \param lit As below.
   */
   static double share(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
                       const cv::Rect &box);
 
+  /*!
+    The light that blinks as a part of a lamp does and is connected with it, across dark patches of up to a
+    quarter of the part's size. \param lines The picture as its sensor read it. \param lit Of each line, the
+    light of the lamp as a share of its most. \param seed The part. \param others Boxes of other lamps, whose
+    light does not count. \return Nothing where that has no shape of a lamp.
+  */
   static std::optional<Extent> about(const cv::Mat_<unsigned char> &lines, const std::vector<float> &lit,
                                      const vpLedRoi &seed, const std::vector<cv::Rect> &others);
 };
