@@ -107,21 +107,19 @@ double vpLampHistory::logStill(const vpLamp &lamp, const vpVlpFilter::Innovation
 double vpLampHistory::addStranger(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation)
 {
   Past &past = m_past[lamp.id];
-  past.stranger = true;
-  const Eigen::Matrix<double, 3, 2> placeBy = // across the ray
-      innovation.byPlace.transpose() * (innovation.byPlace * innovation.byPlace.transpose()).inverse();
-  if (!past.away) {
-    past.away = placeBy * innovation.ray;
-    past.awayCovariance = innovation.covariance;
-    return 0;
-  }
-  const Eigen::Vector2d ray = innovation.ray - innovation.byPlace * *past.away;
-  const Eigen::Matrix2d S = past.awayCovariance + innovation.covariance,
-                        K = past.awayCovariance * S.inverse();
   const double before = past.strayed;
-  past.strayed = std::max(before, 0.5 * ray.dot(S.inverse() * ray));
-  *past.away += placeBy * (K * ray);
-  past.awayCovariance -= (K * past.awayCovariance).eval();
+  const bool isFirst = !past.away;
+  if (!isFirst) {
+    const Eigen::Vector2d ray = innovation.ray - innovation.byPlace * *past.away;
+    const Eigen::Matrix2d S = past.awayCovariance + innovation.covariance;
+    past.strayed = std::max(before, 0.5 * ray.dot(S.inverse() * ray));
+  }
+  // Errors of the pose are alike from frame to frame: a mean would be no better than the most exact of them.
+  if (isFirst || innovation.covariance.trace() < past.awayCovariance.trace()) {
+    past.away = innovation.byPlace.inverse() * innovation.ray;
+    past.awayCovariance = innovation.covariance;
+  }
+  past.stranger = true;
   return past.strayed - before;
 }
 

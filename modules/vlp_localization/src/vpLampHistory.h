@@ -53,10 +53,8 @@ public:
   void setStranger(const vpLamp &lamp, bool stranger);
   //! Whether they have, and it was not seen in its place since.
   bool isStranger(const vpLamp &lamp) const;
-  /*!
-    Log density of a ray to a stranger, which hangs still: its way from its lamp (m along x, y and z of w) is
-    constant. Minus infinity where it was not seen before.
-  */
+  //! Log density of a ray to a stranger, which hangs still, as high as its lamp. Minus infinity where it was
+  //! not seen before.
   double logStill(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const;
   //! Takes what a frame shows of a stranger. \return Nats by which the frame makes it less likely than the
   //! frames before did that it hangs still.
@@ -67,7 +65,7 @@ public:
 private:
   struct Past {
     bool stranger = false;
-    std::optional<Eigen::Vector3d> away; // m, of the stranger from the lamp,
+    std::optional<Eigen::Vector2d> away; // m, x and y in w, of the stranger from the lamp,
     Eigen::Matrix2d awayCovariance;      // and its covariance, as rays
     double strayed = 0; // half the square of the most that a frame had it elsewhere, in sigmas
     int places = 0;     // frames that told its place

@@ -62,7 +62,7 @@ struct vpVlpFilter::Predicted {
   bool inFront = false;
   double depth = 0;
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
-  Eigen::Matrix<double, 2, 3> byPlace; // of the lamp
+  Eigen::Matrix2d byPlace; // of ray by x and y of the lamp
   Derivative<2> H;
   Eigen::Matrix2d ownCovariance = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
 };
@@ -139,7 +139,7 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
   predicted.ray = (1 + m_x(lens + 2)) * ray.ray + m_x.segment<2>(lens);
   const Eigen::Matrix<double, 2, 3> byPlace = ray.derivative.leftCols<3>(),
                                     byTurn = ray.derivative.rightCols<3>();
-  predicted.byPlace = -byPlace;
+  predicted.byPlace = -byPlace.leftCols<2>();
   const Eigen::Matrix3d byAngles = rotationByAngles(base);
   Eigen::Matrix<double, 2, 3> byAngle = byTurn * byAngles;
   if (!freeAttitude) { // yaw carries the camera along on its level arm, roll and pitch leave it where it is

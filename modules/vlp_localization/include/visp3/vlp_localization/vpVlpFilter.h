@@ -136,8 +136,7 @@ public:
     Eigen::Vector2d ray = Eigen::Vector2d::Zero();        // measured minus predicted, normalised units
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // as predicted, the measurement's own included
     double depth = 0;                                     // m, of the lamp along the camera's axis
-    Eigen::Matrix<double, 2, 3> byPlace =
-        Eigen::Matrix<double, 2, 3>::Zero(); // 1/m, of ray by the lamp's place
+    Eigen::Matrix2d byPlace = Eigen::Matrix2d::Zero();    // 1/m, of ray by x and y of the lamp in w
     //! Mahalanobis distance squared, \e tolerance (m) added for how far lamps may hang from their place.
     double distance(double tolerance) const;
   };
