@@ -38,7 +38,6 @@ if(DOXYGEN_FOUND)
   set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO) # types explain the rest
   set(DOXYGEN_EXAMPLE_PATH tutorial)
   set(DOXYGEN_EXAMPLE_RECURSIVE YES)
-  set(DOXYGEN_MARKDOWN_ID_STYLE GITHUB)
   set(DOXYGEN_GENERATE_LATEX NO)
   set(DOXYGEN_USE_MATHJAX YES)
   set(DOXYGEN_HAVE_DOT NO)
@@ -47,7 +46,7 @@ if(DOXYGEN_FOUND)
   set(DOXYGEN_WARN_LOGFILE "${PROJECT_BINARY_DIR}/doc-warnings.txt")
   set(DOXYGEN_FILTER_PATTERNS "*.h=${PROJECT_SOURCE_DIR}/cmake/doxygen-header.sh")
   file(GLOB includes CONFIGURE_DEPENDS modules/*/include)
-  doxygen_add_docs(doc modules/modules.dox ${includes} README.md BENCHMARK.md data/README.md tutorial tests/bench
+  doxygen_add_docs(doc modules/modules.dox ${includes} README.md BENCHMARK.md CONTRIBUTING.md apps/README.md data/README.md tutorial tests/bench
                    modules/vlp_localization/src/MODEL.md
                    COMMENT "Reference in ${PROJECT_BINARY_DIR}/html")
   install(DIRECTORY "${PROJECT_BINARY_DIR}/html" DESTINATION "${documents}" COMPONENT doc OPTIONAL)
