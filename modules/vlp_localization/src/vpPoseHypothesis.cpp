@@ -205,7 +205,8 @@ void vpPoseHypothesis::correct(const vpLampFrame &frame, double least, Pass &pas
   pass.filter.conclude();
 }
 
-//! \param sight Becomes as uncertain as what the lamp may be off by makes it.
+//! \param told Other lamps have shown where the robot is. \param sight Becomes as uncertain as what the lamp
+//! may be off by makes it.
 vpPoseHypothesis::Verdict vpPoseHypothesis::judge(const vpLampFrame &frame, size_t which, bool told,
                                                   vpLampSight &sight, const vpVlpFilter &filter) const
 {
