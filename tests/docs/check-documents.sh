@@ -1,5 +1,9 @@
 #!/usr/bin/env bash
-# Names each link of a document that leads nowhere, and each file that a document names and that is not there.
+# Names in each document
+#   - links that lead nowhere, and files that are not there;
+#   - blocks of code without a language: run-commands.sh runs ```sh, and neither ```console nor ```text. Commands of
+#     tests/bench are all run by hand, and need none;
+#   - lines of a block ```cpp or ```cmake that the program of the tutorial has not. A line "..." stands for others.
 #   bash tests/docs/check-documents.sh [FILE.md ...]   default: all documents of the repository
 # A link to another host is not followed. Exit code: 0 all are there, 1 some are not.
 set -euo pipefail
@@ -22,6 +26,12 @@ anchors() # FILE: as GitHub makes them of headings, and Doxygen's own
   sed -n 's/.*{#\([^}]*\)}.*/\1/p' "$1"
 }
 
+quoted() # FILE: lines of programs
+{
+  awk '/^ *```/ { quoted = !inside && /^ *```(cpp|cmake)$/; inside = !inside; next } quoted' "$1" |
+    sed -e 's/^ *//' -e '/^\(\.\.\.\)\{0,1\}$/d'
+}
+
 bad=0
 complain() # FILE WHAT
 {
@@ -31,6 +41,14 @@ complain() # FILE WHAT
 
 for document in "${documents[@]}"; do
   folder=$(dirname "$document")
+  [[ $document == tests/bench/* ]] || while IFS= read -r line; do
+    complain "$document" "line $line: a block without a language, expected \`\`\`sh, \`\`\`console, \`\`\`text, \`\`\`cpp ..."
+  done < <(awk '/^ *```/ { inside = !inside; if (inside && /^ *``` *$/) print FNR }' "$document")
+  program=$folder
+  [ "$document" != README.md ] || program=tutorial/cmake-project
+  [[ $program != tutorial/* ]] || while IFS= read -r line; do
+    complain "$document" "quotes a line that $program has not: $line"
+  done < <(quoted "$document" | grep -vxFf <(sed 's/^ *//' "$program"/*.cpp "$program"/CMakeLists.txt 2>/dev/null) || true)
   while IFS= read -r target; do
     case "$target" in http://* | https://* | mailto:*) continue ;; esac
     file=${target%%#*}
@@ -52,5 +70,5 @@ for document in "${documents[@]}"; do
     grep -qrF --include='*.md' "{#$name}" . || complain "$document" "\\ref $name, which is not there"
   done < <(grep -oE '\\ref [A-Za-z0-9_-]+' "$document" | sed 's/^\\ref //' || true)
 done
-[ "$bad" -eq 0 ] && echo "${#documents[@]} documents, all links lead somewhere"
+[ "$bad" -eq 0 ] && echo "${#documents[@]} documents, all links lead somewhere, all quotations are right"
 exit "$bad"

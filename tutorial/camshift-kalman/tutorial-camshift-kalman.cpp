@@ -3,162 +3,90 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 //! \example tutorial-camshift-kalman.cpp
-#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
-#include <random>
-#include <string>
 
-#include <visp3/core/vpException.h>
 #include <visp3/core/vpImageConvert.h>
 #include <visp3/core/vpImageDraw.h>
 #include <visp3/gui/vpDisplayX.h>
-#include <visp3/io/vpImageIo.h>
-#include <visp3/vlp_sensor/vpVideoSource.h>
+#include <visp3/io/vpVideoReader.h>
+#include <visp3/io/vpVideoWriter.h>
 #include <visp3/vlp_tracking/vpCamshiftKalmanTracker.h>
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
 #endif
 
-struct Options {
-  std::string video; // none: a made sequence
-  vpRect window;
-  std::string picture;
-  bool display = false;
-};
-
-bool parse(int argc, char **argv, Options &options)
+//! The lamp's window in the first picture, from the command line or from two clicks.
+vpRect chooseWindow(const char *text, const vpImage<vpRGBa> &O)
 {
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    if (name == "--display") {
-      options.display = true;
-      continue;
-    }
-    if (++i == argc)
-      return false;
-    double x = 0, y = 0, w = 0, h = 0;
-    if (name == "--video")
-      options.video = argv[i];
-    else if (name == "--picture")
-      options.picture = argv[i];
-    else if (name == "--window" && std::sscanf(argv[i], "%lf,%lf,%lf,%lf", &x, &y, &w, &h) == 4)
-      options.window.setRect(x, y, w, h);
-    else
-      return false;
-  }
-  return options.video.empty() == (options.window.getWidth() <= 0);
+  double left = 0, top = 0, width = 0, height = 0;
+  if (text != nullptr && std::sscanf(text, "%lf,%lf,%lf,%lf", &left, &top, &width, &height) == 4)
+    return vpRect(left, top, width, height);
+  vpImagePoint one, other;
+  vpDisplay::getClick(O, one);
+  vpDisplay::getClick(O, other);
+  return vpRect(std::vector<vpImagePoint>{one, other});
 }
 
-//! A lamp whose stripes have another phase in each frame; a beam that it passes behind; 60 frames.
-class MadeSequence : public vpFrameSource
+void draw(const vpCamshiftKalmanTracker &tracker, bool seen, vpImage<vpRGBa> &O)
 {
-public:
-  bool next(vpVlpFrame &frame) override
-  {
-    if (m_index == size())
-      return false;
-    std::normal_distribution<double> noise(0, 2); // grey levels
-    const double phase = std::uniform_real_distribution<double>()(m_generator);
-    frame.I.resize(240, 320);
-    frame.timestamp = m_index / 30.0;
-    for (int v = 0; v < 240; ++v)
-      for (int u = 0; u < 320; ++u) {
-        const bool lit = std::fmod(v / 7.0 + phase, 1) < 0.5;
-        const bool inside = std::hypot(u - middleU(m_index), v - middleV(m_index)) < 20;
-        const bool beam = u >= 170 && u < 214;
-        const double grey = beam ? 45 : (inside && lit ? 200 : 15);
-        frame.I[v][u] = static_cast<unsigned char>(std::max(0.0, grey + noise(m_generator)));
-      }
-    ++m_index;
-    return true;
+  const vpColor colour = seen ? vpColor::green : vpColor::red;
+  const vpRect window = tracker.window();
+  if (window.getWidth() > 0) { // else all of it is outside the picture
+    vpImageDraw::drawRectangle(O, window, colour, false, 2);
+    vpImageDraw::drawEllipse(O, window.getCenter(), window.getWidth() / 2, window.getHeight() / 2, 0, false,
+                             colour, 0, 2 * M_PI, 2);
   }
-  size_t size() const override { return 60; }
-
-  static double middleU(size_t frame) { return 40 + 4.2 * frame; }
-  static double middleV(size_t frame) { return 90 + 0.016 * frame * frame; }
-  static vpRect window() { return vpRect(20, 70, 41, 41); } // around the lamp in the first frame
-
-private:
-  size_t m_index = 0;
-  std::mt19937 m_generator{1};
-};
-
-//! What the tracker thought, drawn into the last picture.
-struct Trail {
-  vpImage<vpRGBa> picture;
-
-  void draw(const vpImage<unsigned char> &I, const std::vector<vpImagePoint> &path,
-            const std::vector<bool> &seen, const vpRect &window)
-  {
-    vpImageConvert::convert(I, picture);
-    for (size_t k = 0; k < path.size(); ++k)
-      vpImageDraw::drawCross(picture, path[k], 3, seen[k] ? vpColor::green : vpColor::red);
-    if (window.getWidth() > 0)
-      vpImageDraw::drawRectangle(picture, window, vpColor::green);
-  }
-};
+  const vpImagePoint next = tracker.center() + tracker.velocity();
+  vpImageDraw::drawCross(O, next, 15, vpColor::yellow, 2);
+  vpImageDraw::drawCircle(O, next, static_cast<unsigned int>(3 * tracker.positionSigma()), vpColor::yellow);
+}
 
 int main(int argc, char **argv)
 {
-  Options options;
-  if (!parse(argc, argv, options)) {
-    std::cerr << "usage: " << argv[0] << " [--video FILE --window x,y,w,h] [--picture FILE] [--display]"
-              << std::endl;
+  if (argc != 3 && argc != 4) {
+    std::cerr << "usage: " << argv[0] << " VIDEO FOLLOWED [LEFT,TOP,WIDTH,HEIGHT]" << std::endl;
     return 2;
   }
   try {
-    std::unique_ptr<vpFrameSource> source;
-    if (options.video.empty())
-      source = std::make_unique<MadeSequence>();
-    else
-      source = std::make_unique<vpVideoSource>(options.video);
-
-    vpVlpFrame frame;
-    if (!source->next(frame)) {
-      std::cerr << options.video << ": no frame" << std::endl;
-      return 3;
-    }
-    vpCamshiftKalmanTracker tracker;
-    tracker.initTracking(frame.I, options.video.empty() ? MadeSequence::window() : options.window);
-
+    vpImage<unsigned char> I; // as the camera took it
+    vpImage<vpRGBa> O;        // as it is shown and saved
+    vpVideoReader reader;
+    reader.setFileName(argv[1]);
+    reader.open(I);
+    vpImageConvert::convert(I, O);
+    vpVideoWriter writer;
+    writer.setFileName(argv[2]);
+    writer.open(O);
+    std::unique_ptr<vpDisplay> display;
 #ifdef VISP_HAVE_X11
-    std::unique_ptr<vpDisplayX> display;
-    if (options.display)
-      display = std::make_unique<vpDisplayX>(frame.I, 0, 0, "Camshift-Kalman");
+    if (std::getenv("DISPLAY") != nullptr) // else there is no screen
+      display = std::make_unique<vpDisplayX>(O, 0, 0, "Click two opposite corners of the lamp");
 #endif
+    vpDisplay::display(O);
+    vpDisplay::flush(O);
 
-    std::vector<vpImagePoint> path;
-    std::vector<bool> seen;
-    double worst = 0; // px, of the made sequence
-    while (source->next(frame)) {
-      seen.push_back(tracker.track(frame.I));
-      path.push_back(tracker.center());
-      std::printf("%3zu: (%6.1f, %6.1f) px, similarity %.2f, sigma %5.1f px%s\n", path.size(),
-                  path.back().get_u(), path.back().get_v(), tracker.similarity(), tracker.positionSigma(),
-                  seen.back() ? "" : ", predicted");
-      worst = std::max(worst, std::hypot(path.back().get_u() - MadeSequence::middleU(path.size()),
-                                         path.back().get_v() - MadeSequence::middleV(path.size())));
-      if (options.display) {
-        vpDisplay::display(frame.I);
-        tracker.display(frame.I, seen.back() ? vpColor::green : vpColor::red, 2);
-        vpDisplay::flush(frame.I);
-        if (vpDisplay::getClick(frame.I, false))
-          break;
-      }
+    vpCamshiftKalmanTracker tracker;
+    tracker.initTracking(I, chooseWindow(argv[3], O));
+    bool seen = true;
+    while (!reader.end()) {
+      reader.acquire(I);
+      seen = tracker.track(I);
+      std::printf("%3ld: (%6.1f, %6.1f) px, similarity %.2f, sigma %4.1f px%s\n", reader.getFrameIndex(),
+                  tracker.center().get_u(), tracker.center().get_v(), tracker.similarity(),
+                  tracker.positionSigma(), seen ? "" : ", predicted");
+      vpImageConvert::convert(I, O);
+      draw(tracker, seen, O);
+      writer.saveFrame(O);
+      vpDisplay::display(O);
+      vpDisplay::flush(O);
+      if (vpDisplay::getClick(O, false))
+        break;
     }
-
-    if (!options.picture.empty()) {
-      Trail trail;
-      trail.draw(frame.I, path, seen, tracker.window());
-      vpImageIo::write(trail.picture, options.picture);
-    }
-    if (!options.video.empty())
-      return 0;
-    std::printf("worst error %.1f px\n", worst);
-    return worst < 20 && seen.back() ? 0 : 1;
+    return seen ? 0 : 3;
   } catch (const vpException &error) {
     std::cerr << error.getStringMessage() << std::endl;
     return 2;

@@ -8,56 +8,86 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
-#include <string>
 
-#include <visp3/core/vpException.h>
+#include <visp3/core/vpImageConvert.h>
+#include <visp3/core/vpIoTools.h>
+#include <visp3/gui/vpDisplayX.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 #include <visp3/vlp_sensor/vpCameraSource.h>
 #include <visp3/vlp_sensor/vpPictureSequence.h>
+#include <visp3/vlp_sensor/vpResizedSource.h>
+#include <visp3/vlp_sensor/vpVideoSource.h>
 
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
 #endif
 
+//! A camera, the folder of a run, numbered pictures or a video: the name tells which.
 std::unique_ptr<vpFrameSource> open(const std::string &name, const vpVlpRig &rig)
 {
-  if (!vpCameraSource::isUri(name))
+  if (vpCameraSource::isUri(name)) {
+    vpCameraSettings settings;
+    settings.exposure = rig.shutter.exposure;
+    if (rig.resize.method == vpPictureResize::Method::none) // else the sensor's whole picture is made smaller
+      settings.region = vpCameraRegion{0, 0, rig.width, rig.height};
+    auto camera = std::make_unique<vpCameraSource>(name, settings);
+    std::printf("exposed for %.1f us\n", 1e6 * camera->settings().exposure.value_or(NAN));
+    return std::make_unique<vpResizedSource>(std::move(camera), rig);
+  }
+  if (vpIoTools::checkDirectory(name))
     return std::make_unique<vpPictureSequence>(vpPictureSequence::fromRun(name));
-  vpCameraSettings settings;
-  settings.exposure = rig.shutter.exposure;
-  settings.region = vpCameraRegion{0, 0, rig.width, rig.height};
-  auto camera = std::make_unique<vpCameraSource>(name, settings);
-  std::printf("exposed for %.1f us\n", 1e6 * camera->settings().exposure.value_or(NAN));
-  return camera;
+  if (name.find('%') != std::string::npos)
+    return std::make_unique<vpPictureSequence>(vpPictureSequence::fromPattern(name));
+  return std::make_unique<vpVideoSource>(name);
+}
+
+//! The next frame. What cannot be read is told, and left out.
+bool next(vpFrameSource &source, vpVlpFrame &frame)
+{
+  for (;;) {
+    try {
+      return source.next(frame);
+    } catch (const vpException &error) { // of a camera: it went away, and the next call waits for its return
+      std::cerr << error.getStringMessage() << std::endl;
+    }
+  }
 }
 
 int main(int argc, char **argv)
 {
-  if (argc != 4 && argc != 5) {
-    std::cerr << "usage: " << argv[0] << " CAMERA_URI|RUN RIG LAMPS [FRAMES]" << std::endl;
+  if (argc != 4) {
+    std::cerr << "usage: " << argv[0] << " CAMERA_URI|RUN|PATTERN|VIDEO RIG LAMPS" << std::endl;
     return 2;
   }
   try {
     const vpVlpRig rig = vpVlpRig::load(argv[2]);
     vpVlpLocalizer localizer(rig, vpLampMap::load(argv[3]));
     const std::unique_ptr<vpFrameSource> source = open(argv[1], rig);
-    const int frames = argc == 5 ? std::atoi(argv[4]) : 100;
+    vpImage<vpRGBa> O(rig.height, rig.width); // what is shown
+    std::unique_ptr<vpDisplay> display;
+#ifdef VISP_HAVE_X11
+    if (std::getenv("DISPLAY") != nullptr) // else there is no screen
+      display = std::make_unique<vpDisplayX>(O, 0, 0, "A click ends it");
+#endif
 
-    int poses = 0;
-    vpVlpFrame frame;
-    for (int k = 0; k < frames; ++k) {
-      try {
-        if (!source->next(frame))
-          break;
-      } catch (const vpException &error) { // the camera went away: the next call waits for its return
-        std::cerr << error.getStringMessage() << std::endl;
-        continue;
-      }
-      const vpVlpFix fix = localizer.process(frame).fix;
+    size_t poses = 0;
+    for (vpVlpFrame frame; next(*source, frame) && !vpDisplay::getClick(O, false);) {
+      const vpVlpLocation location = localizer.process(frame);
+      const vpVlpFix &fix = location.fix;
       if (fix.valid)
         std::printf("%.3f s  x %7.3f  y %7.3f m  +/- %.1f mm\n", frame.timestamp, fix.wMb[0][3],
                     fix.wMb[1][3], 1e3 * std::sqrt(fix.covariance(0, 0) + fix.covariance(1, 1)));
+      else
+        std::printf("%.3f s  %s\n", frame.timestamp, fix.refusal.c_str());
       poses += fix.valid;
+
+      vpImageConvert::convert(frame.I, O);
+      vpDisplay::display(O);
+      for (const vpLampObservation &lamp : location.observations)
+        vpDisplay::displayText(O, vpImagePoint(lamp.point.y(), lamp.point.x()),
+                               lamp.id.empty() ? "?" : lamp.id,
+                               lamp.accepted ? vpColor::green : vpColor::orange);
+      vpDisplay::flush(O);
     }
     if (!source->remark().empty())
       std::cerr << source->remark() << std::endl;
