@@ -11,7 +11,18 @@ table() # PROGRAM [COMMAND]: a row for each option, its explanation on one line
 {
   printf '\n## %s\n' "$*"
   "$bin/$1" "${@:2}" --help | awk '
-    function row() { if (option != "" && option !~ /--(help|version)$/) { gsub(/\|/, "\\|", option); gsub(/\|/, "\\|", text); print "| `" option "` | " text " |" } option = "" }
+    function row() {
+      if (option != "" && option !~ /--(help|version)$/) {
+        if (match(option, / Needs: /)) {
+          text = "with `" substr(option, RSTART + RLENGTH) "`: " text
+          option = substr(option, 1, RSTART - 1)
+        }
+        gsub(/\|/, "\\|", option)
+        gsub(/\|/, "\\|", text)
+        print "| `" option "` | " text " |"
+      }
+      option = ""
+    }
     BEGIN { print "| option | what it does |\n|---|---|" }
     /^ *(-[a-z],)?--[a-z]/ {
       row()
