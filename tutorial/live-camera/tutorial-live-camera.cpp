@@ -53,6 +53,15 @@ bool next(vpFrameSource &source, vpVlpFrame &frame)
   }
 }
 
+void mark(const vpLampObservation &lamp, const vpImage<vpRGBa> &O)
+{
+  const vpColor colour = lamp.accepted ? vpColor::green : vpColor::orange;
+  const vpImagePoint middle(lamp.point.y(), lamp.point.x());
+  const double radius = lamp.outline.diameter() / 2 + 3;
+  vpDisplay::displayCircle(O, middle, static_cast<unsigned int>(radius), colour, false, 2);
+  vpDisplay::displayText(O, middle + vpImagePoint(0, radius + 8), lamp.id.empty() ? "?" : lamp.id, colour);
+}
+
 int main(int argc, char **argv)
 {
   if (argc != 4) {
@@ -71,7 +80,8 @@ int main(int argc, char **argv)
 #endif
 
     size_t poses = 0;
-    for (vpVlpFrame frame; next(*source, frame) && !vpDisplay::getClick(O, false);) {
+    bool clicked = false;
+    for (vpVlpFrame frame; !clicked && next(*source, frame);) {
       const vpVlpLocation location = localizer.process(frame);
       const vpVlpFix &fix = location.fix;
       if (fix.valid)
@@ -84,11 +94,12 @@ int main(int argc, char **argv)
       vpImageConvert::convert(frame.I, O);
       vpDisplay::display(O);
       for (const vpLampObservation &lamp : location.observations)
-        vpDisplay::displayText(O, vpImagePoint(lamp.point.y(), lamp.point.x()),
-                               lamp.id.empty() ? "?" : lamp.id,
-                               lamp.accepted ? vpColor::green : vpColor::orange);
+        mark(lamp, O);
       vpDisplay::flush(O);
+      clicked = vpDisplay::getClick(O, false);
     }
+    if (!clicked)
+      vpDisplay::getClick(O); // the last frame stays
     if (!source->remark().empty())
       std::cerr << source->remark() << std::endl;
     return poses > 0 ? 0 : 3;
