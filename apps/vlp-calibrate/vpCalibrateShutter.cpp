@@ -7,8 +7,10 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Core>
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_calibration/vpShutterCalibration.h>
@@ -116,15 +118,42 @@ std::string textOf(const vpShutterEstimate &found)
     table.rows.push_back({"effective exposure, us", vpFormat("%.2f", 1e6 * found.exposure),
                           vpFormat("%.2f", 1e6 * found.exposureSigma)});
   }
+  vpReportTable lamps;
+  lamps.heading = "Lamps";
+  lamps.columns = {"lamp", "pictures", "left out", "row time, us", "scatter"};
+  std::map<std::string, std::vector<const vpShutterSight *>> ofLamp;
+  for (const vpShutterSight &sight : found.sights) {
+    ofLamp[sight.lamp].push_back(&sight);
+  }
+  for (const auto &[lamp, sights] : ofLamp) {
+    Eigen::ArrayXd used(0);
+    for (const vpShutterSight *sight : sights) {
+      if (sight->used) {
+        used.conservativeResize(used.size() + 1);
+        used.tail<1>() = 1e6 * sight->rowTime;
+      }
+    }
+    const double mean = used.size() > 0 ? used.mean() : std::nan("");
+    lamps.rows.push_back({lamp, std::to_string(sights.size()),
+                          std::to_string(static_cast<long>(sights.size()) - used.size()),
+                          used.size() > 0 ? vpFormat("%.5f", mean) : "",
+                          used.size() > 1 ? vpFormat("%.5f", std::sqrt((used - mean).square().mean())) : ""});
+  }
+  return table.text() + "\n" + lamps.text();
+}
+
+//! What each lamp in each picture says.
+std::string sightsOf(const vpShutterEstimate &found)
+{
   vpReportTable each;
-  each.heading = "Lamps";
+  each.heading = "Pictures";
   each.columns = {"picture", "lamp", "row time, us", "standard deviation", "exposure, us", ""};
   for (const vpShutterSight &sight : found.sights) {
     each.rows.push_back({std::filesystem::path(sight.picture).filename().string(), sight.lamp,
                          vpFormat("%.5f", 1e6 * sight.rowTime), vpFormat("%.5f", 1e6 * sight.sigma),
                          vpFormat("%.2f", 1e6 * sight.exposure), sight.used ? "" : "left out"});
   }
-  return table.text() + "\n" + each.text();
+  return each.text();
 }
 } // namespace
 
@@ -163,7 +192,7 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
                    found.alongColumns ? "rows" : "columns", found.alongColumns ? "columns" : "rows");
     }
     const vpCalibrationFolder folder(options.out);
-    folder.write("report.txt", text);
+    folder.write("report.txt", text + "\n" + sightsOf(found));
     folder.writeRig(rig);
     spdlog::info(vpOneLine(options.out) + ": rig.yaml with this shutter, camera.xml, report");
   }
