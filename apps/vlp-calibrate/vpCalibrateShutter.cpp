@@ -10,7 +10,6 @@
 #include <map>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Core>
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_calibration/vpShutterCalibration.h>
@@ -120,24 +119,24 @@ std::string textOf(const vpShutterEstimate &found)
   }
   vpReportTable lamps;
   lamps.heading = "Lamps";
-  lamps.columns = {"lamp", "pictures", "left out", "row time, us", "scatter"};
+  lamps.columns = {"lamp", "pictures", "left out", "row time, us", "standard deviation"};
   std::map<std::string, std::vector<const vpShutterSight *>> ofLamp;
   for (const vpShutterSight &sight : found.sights) {
     ofLamp[sight.lamp].push_back(&sight);
   }
   for (const auto &[lamp, sights] : ofLamp) {
-    Eigen::ArrayXd used(0);
+    size_t used = 0;
+    double weights = 0, sum = 0; // weighted mean of those that count
     for (const vpShutterSight *sight : sights) {
       if (sight->used) {
-        used.conservativeResize(used.size() + 1);
-        used.tail<1>() = 1e6 * sight->rowTime;
+        ++used;
+        weights += 1 / (sight->sigma * sight->sigma);
+        sum += sight->rowTime / (sight->sigma * sight->sigma);
       }
     }
-    const double mean = used.size() > 0 ? used.mean() : std::nan("");
-    lamps.rows.push_back({lamp, std::to_string(sights.size()),
-                          std::to_string(static_cast<long>(sights.size()) - used.size()),
-                          used.size() > 0 ? vpFormat("%.5f", mean) : "",
-                          used.size() > 1 ? vpFormat("%.5f", std::sqrt((used - mean).square().mean())) : ""});
+    lamps.rows.push_back({lamp, std::to_string(sights.size()), std::to_string(sights.size() - used),
+                          used > 0 ? vpFormat("%.5f", 1e6 * sum / weights) : "",
+                          used > 0 ? vpFormat("%.5f", 1e6 / std::sqrt(weights)) : ""});
   }
   return table.text() + "\n" + lamps.text();
 }
