@@ -36,6 +36,7 @@ const char *const footer = R"(
 Examples:
   vlp-calibrate camera --board chessboard --size 9x6 --spacing 25 --print board.pdf
   vlp-calibrate camera --board chessboard --size 9x6 --spacing 25 --images 'board/%02d.png' --out camera
+  vlp-calibrate camera --camera-info ros/camera_info.yaml --out camera
 
 Print the board at 100 %, glue it on something flat, measure it. Take 15 pictures or more, the board tilted by 20 to 40
 degrees to all sides and reaching the corners of the picture. A size counts inner corners, or circles.
@@ -55,7 +56,8 @@ Exit code: 0 done; 2 bad usage or bad input; 3 the pictures do not tell.
 
 struct Options {
   vpFrameOptions frames;
-  std::string kind = "chessboard", size = "9x6", spacing = "25", model = "visp", name = "camera", print, out;
+  std::string kind = "chessboard", size = "9x6", spacing = "25", model = "visp", name = "camera", info, print,
+              out;
   vpBoard board;
   vpCameraCalibration calibration;
 
@@ -70,6 +72,8 @@ struct Options {
     vpAddName(app, "--spacing", spacing, "MM", "side of a square, or from circle to circle (default 25)");
     vpAddName(app, "--print", print, "FILE", "write the board as a PDF in true size, and nothing else");
     frames.add(app);
+    vpAddInput(app, "--camera-info", info, "FILE",
+               "take a ROS camera_info YAML in place of pictures, and write camera.xml");
     vpAddChoice(app, "--model", model, {"visp", "perspective", "kannala-brandt", "opencv"},
                 "of the camera (default visp)");
     vpAddName(app, "--name", name, "NAME", "of the camera in the files (default camera)");
@@ -99,7 +103,10 @@ struct Options {
                         : model == "kannala-brandt" ? Model::kannalaBrandt
                         : model == "opencv"         ? Model::opencv
                                                     : Model::visp;
-    if (print.empty()) {
+    if (!info.empty() && out.empty()) {
+      fail("--camera-info: no --out, expected the folder for camera.xml");
+    }
+    if (print.empty() && info.empty()) {
       frames.check();
     }
     return true;
@@ -230,6 +237,13 @@ vpExitCode vpCalibrateCamera(int argc, char **argv)
     file.stream() << options.board.pdf();
     file.commit();
     spdlog::info(vpOneLine(options.print) + ": print it at 100 %, then measure the line below the board");
+    return vpExitCode::done;
+  }
+  if (!options.info.empty()) {
+    const vpCameraXml camera = vpCameraFromInfo(options.info);
+    const vpCalibrationFolder folder(options.out);
+    camera.save(folder / "camera.xml");
+    spdlog::info("{}: camera.xml of {}", vpOneLine(options.out), vpOneLine(camera.name));
     return vpExitCode::done;
   }
   const Seen seen = look(options);

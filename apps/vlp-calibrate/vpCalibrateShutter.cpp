@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
@@ -116,15 +117,42 @@ std::string textOf(const vpShutterEstimate &found)
     table.rows.push_back({"effective exposure, us", vpFormat("%.2f", 1e6 * found.exposure),
                           vpFormat("%.2f", 1e6 * found.exposureSigma)});
   }
+  vpReportTable lamps;
+  lamps.heading = "Lamps";
+  lamps.columns = {"lamp", "pictures", "left out", "row time, us", "standard deviation"};
+  std::map<std::string, std::vector<const vpShutterSight *>> ofLamp;
+  for (const vpShutterSight &sight : found.sights) {
+    ofLamp[sight.lamp].push_back(&sight);
+  }
+  for (const auto &[lamp, sights] : ofLamp) {
+    size_t used = 0;
+    double weights = 0, sum = 0; // weighted mean of those that count
+    for (const vpShutterSight *sight : sights) {
+      if (sight->used) {
+        ++used;
+        weights += 1 / (sight->sigma * sight->sigma);
+        sum += sight->rowTime / (sight->sigma * sight->sigma);
+      }
+    }
+    lamps.rows.push_back({lamp, std::to_string(sights.size()), std::to_string(sights.size() - used),
+                          used > 0 ? vpFormat("%.5f", 1e6 * sum / weights) : "",
+                          used > 0 ? vpFormat("%.5f", 1e6 / std::sqrt(weights)) : ""});
+  }
+  return table.text() + "\n" + lamps.text();
+}
+
+//! What each lamp in each picture says.
+std::string sightsOf(const vpShutterEstimate &found)
+{
   vpReportTable each;
-  each.heading = "Lamps";
+  each.heading = "Pictures";
   each.columns = {"picture", "lamp", "row time, us", "standard deviation", "exposure, us", ""};
   for (const vpShutterSight &sight : found.sights) {
     each.rows.push_back({std::filesystem::path(sight.picture).filename().string(), sight.lamp,
                          vpFormat("%.5f", 1e6 * sight.rowTime), vpFormat("%.5f", 1e6 * sight.sigma),
                          vpFormat("%.2f", 1e6 * sight.exposure), sight.used ? "" : "left out"});
   }
-  return table.text() + "\n" + each.text();
+  return each.text();
 }
 } // namespace
 
@@ -163,7 +191,7 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
                    found.alongColumns ? "rows" : "columns", found.alongColumns ? "columns" : "rows");
     }
     const vpCalibrationFolder folder(options.out);
-    folder.write("report.txt", text);
+    folder.write("report.txt", text + "\n" + sightsOf(found));
     folder.writeRig(rig);
     spdlog::info(vpOneLine(options.out) + ": rig.yaml with this shutter, camera.xml, report");
   }

@@ -171,6 +171,16 @@ TEST_F(VlpCalibrate, CameraFromPicturesAndTheWrongSize)
   EXPECT_NEAR(found.camera.get_u0(), 395, 2.5);
   EXPECT_NE(folder.read("out/camera_info.yaml").find("distortion_model: plumb_bob"), std::string::npos);
 
+  // ROS's file and back.
+  vpProcess back("vlp-calibrate",
+                 {"camera", "--camera-info", folder / "out/camera_info.yaml", "--out", folder / "back"});
+  ASSERT_EQ(back.wait(), done) << back.err();
+  const vpCameraParameters same = vpCameraXml::load(folder / "back/camera.xml", "camera").camera;
+  EXPECT_NEAR(same.get_py(), found.camera.get_py(), 1e-9);
+  EXPECT_NEAR(same.get_v0(), found.camera.get_v0(), 1e-9);
+  EXPECT_NEAR(same.get_kud(), found.camera.get_kud(), 1e-12);
+  EXPECT_NEAR(same.get_kdu(), found.camera.get_kdu(), 1e-12);
+
   words.insert(words.begin() + 1, {"--size", "8x5"});
   expectRefused(words, nothingFound, {"8x5 inner corners", "one of 9x6 is there"});
   vpProcess print("vlp-calibrate", {"camera", "--print", folder / "board.pdf"});

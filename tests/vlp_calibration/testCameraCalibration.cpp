@@ -177,6 +177,34 @@ TEST(CameraCalibration, AnyNameComesBackFromItsYaml)
   }
 }
 
+TEST(CameraInfo, OfAWideLensComesBackAndOneWithoutAModelIsRefused)
+{
+  const vpTemporaryFolder folder;
+  vpCameraEstimate estimate;
+  estimate.values = (Eigen::VectorXd(8) << 500, 501, 320, 240, 0.01, -0.02, 0.003, -0.0004).finished();
+  const std::string file =
+      folder.write("camera_info.yaml",
+                   vpCameraInfoYaml(estimate, vpCameraCalibration::Model::kannalaBrandt, "wide", 640, 480));
+  const vpCameraXml wide = vpCameraFromInfo(file);
+  EXPECT_EQ(wide.name, "wide");
+  EXPECT_EQ(wide.width, 640u);
+  EXPECT_EQ(wide.height, 480u);
+  EXPECT_EQ(wide.camera.get_py(), 501);
+  EXPECT_EQ(wide.camera.getKannalaBrandtDistortionCoefficients(),
+            (std::vector<double>{0.01, -0.02, 0.003, -0.0004, 0}));
+
+  estimate.values = (Eigen::VectorXd(9) << 500, 501, 320, 240, -0.1, 0.01, 0, 0, 0).finished();
+  folder.write("camera_info.yaml",
+               vpCameraInfoYaml(estimate, vpCameraCalibration::Model::opencv, "k2", 640, 480));
+  try {
+    vpCameraFromInfo(file);
+    FAIL() << "k2 was taken";
+  } catch (const vpException &error) {
+    EXPECT_NE(error.getStringMessage().find("distortion_coefficients"), std::string::npos);
+    EXPECT_NE(error.getStringMessage().find("k2"), std::string::npos);
+  }
+}
+
 TEST(Board, IsFoundWhereItIs)
 {
   for (const vpBoard::Kind kind : {vpBoard::Kind::chessboard, vpBoard::Kind::charuco}) {

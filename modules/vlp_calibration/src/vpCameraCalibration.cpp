@@ -46,20 +46,6 @@ double wayBack(double px, double py, double u0, double v0, double kud, unsigned 
   return square > 0 ? product / square : 0;
 }
 
-vpCameraParameters cameraOf(Model model, const Eigen::VectorXd &p, unsigned int width, unsigned int height)
-{
-  vpCameraParameters camera;
-  if (model == Model::visp) {
-    camera.initPersProjWithDistortion(p(0), p(1), p(2), p(3), p(4),
-                                      wayBack(p(0), p(1), p(2), p(3), p(4), width, height));
-  } else if (model == Model::kannalaBrandt) {
-    camera.initProjWithKannalaBrandtDistortion(p(0), p(1), p(2), p(3), {p(4), p(5), p(6), p(7), 0});
-  } else {
-    camera.initPersProjWithoutDistortion(p(0), p(1), p(2), p(3));
-  }
-  return camera;
-}
-
 std::vector<std::string> namesOf(Model model)
 {
   std::vector<std::string> names = {"px", "py", "u0", "v0"};
@@ -116,6 +102,21 @@ bool liesOnItsBoard(const vpBoardSight &sight)
 }
 } // namespace
 
+vpCameraParameters vpCameraOf(vpCameraCalibration::Model model, const Eigen::VectorXd &p, unsigned int width,
+                              unsigned int height)
+{
+  vpCameraParameters camera;
+  if (model == Model::visp) {
+    camera.initPersProjWithDistortion(p(0), p(1), p(2), p(3), p(4),
+                                      wayBack(p(0), p(1), p(2), p(3), p(4), width, height));
+  } else if (model == Model::kannalaBrandt) {
+    camera.initProjWithKannalaBrandtDistortion(p(0), p(1), p(2), p(3), {p(4), p(5), p(6), p(7), 0});
+  } else {
+    camera.initPersProjWithoutDistortion(p(0), p(1), p(2), p(3));
+  }
+  return camera;
+}
+
 bool vpCameraCalibration::fit(const std::vector<vpBoardSight> &sights, unsigned int width,
                               unsigned int height, vpCameraEstimate &estimate) const
 {
@@ -128,7 +129,7 @@ bool vpCameraCalibration::fit(const std::vector<vpBoardSight> &sights, unsigned 
   }
   if (good) {
     estimate.names = namesOf(model);
-    estimate.camera = cameraOf(model, estimate.values, width, height);
+    estimate.camera = vpCameraOf(model, estimate.values, width, height);
   }
   return good;
 }

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <visp3/core/vpCameraParameters.h>
 #include <visp3/vlp_calibration/vpBoard.h>
+#include <visp3/vlp_core/vpCameraXml.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -74,6 +75,13 @@ private:
 //! A ROS camera_info YAML: plumb_bob of perspective, visp and opencv, equidistant of Kannala-Brandt.
 VISP_EXPORT std::string vpCameraInfoYaml(const vpCameraEstimate &estimate, vpCameraCalibration::Model model,
                                          const std::string &name, unsigned int width, unsigned int height);
+
+/*!
+  The camera of such a file. plumb_bob whose only coefficient is k1 becomes ViSP's perspective projection with
+  distortion, k1 its kud; equidistant becomes Kannala-Brandt. \throw vpException with file, line, field, what
+  came and what was expected; of plumb_bob with more coefficients, for which ViSP has no camera, too.
+*/
+VISP_EXPORT vpCameraXml vpCameraFromInfo(const std::string &filename);
 
 END_VISP_NAMESPACE
 
