@@ -181,6 +181,24 @@ TEST(VlpFilter, FixOfTheFutureFollowsTheArcAndIsLessCertainTheFartherItIs)
   expectSame(filter.now(), now);
 }
 
+TEST(VlpFilter, OfFreeAttitudeItClimbsAsItLeans)
+{
+  const double speed = 0.1, pitch = -0.07, roll = 0.05; // nose and left side up
+  for (const bool isFree : {true, false}) {
+    vpVlpFilter filter(lampScene::rigWith(vpHomogeneousMatrix()));
+    filter.freeAttitude = isFree;
+    for (double t = 0; t < 1.05; t += 0.1) {
+      filter.addOdometry({t, speed, 0});
+    }
+    filter.start(lampScene::frame(0, 0, 0, roll, pitch, 0.7), 0);
+    filter.advance(1);
+    const vpVlpFix fix = filter.now();
+    EXPECT_NEAR(fix.wMb[2][3], isFree ? -speed * std::sin(pitch) : 0, 1e-4);
+    const double along = std::cos(0.7) * fix.wMb[0][3] + std::sin(0.7) * fix.wMb[1][3];
+    EXPECT_NEAR(along, speed, 0.01 * speed);
+  }
+}
+
 TEST(VlpFilter, StateGoesByTheCovarianceAlone)
 {
   const vpVlpFilter filter{vpVlpRig()};

@@ -64,6 +64,9 @@ void vpVlpFilter::arc(double dt)
   const double bend = 0.5 * m_x(w) * dt, chord = std::abs(bend) > 1e-9 ? std::sin(bend) / bend : 1;
   m_x.head<2>() += Eigen::Rotation2Dd(m_x(yaw) + bend) * (chord * dt * m_x.segment<2>(vx));
   m_x(yaw) = std::remainder(m_x(yaw) + m_x(w) * dt, 2 * M_PI);
+  if (freeAttitude) { // along the plane in which it stands, to first order
+    m_x(z) += dt * (m_x(roll) * m_x(vy) - m_x(pitch) * m_x(vx));
+  }
 }
 
 //! The same with its covariance. \e accelerates: its velocity walks at random.
@@ -83,6 +86,10 @@ void vpVlpFilter::move(double dt, bool accelerates)
     P.row(y) += chord * dt * left.y() * P.row(yaw) + turned(1, 0) * P.row(vx) + turned(1, 1) * P.row(vy) +
                 0.5 * dt * dt * left.y() * P.row(w);
     P.row(yaw) += dt * P.row(w);
+    if (freeAttitude) {
+      P.row(z) += dt * (v.y() * P.row(roll) - v.x() * P.row(pitch) + m_x(roll) * P.row(vy) -
+                        m_x(pitch) * P.row(vx));
+    }
   };
   carry(m_P);
   carry(m_P.transpose());
@@ -96,6 +103,7 @@ void vpVlpFilter::move(double dt, bool accelerates)
   if (freeAttitude) {
     m_P(roll, roll) += square(tiltDrift) * t;
     m_P(pitch, pitch) += square(tiltDrift) * t;
+    m_P(z, z) += square(claimedTilt) * v.squaredNorm() * t; // what leans may be the camera alone
   }
   if (accelerates) {
     // Accelerations along x and y of b are alike, so that the heading does not matter.
