@@ -69,7 +69,7 @@ std::vector<Eigen::Vector2d> ellipse(const Eigen::Vector2d &centre, const Eigen:
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i < count; ++i) {
     const double t = 2 * M_PI * i / count;
-    points.push_back(centre + reach * Eigen::Vector2d(std::cos(t), std::sin(t)));
+    points.emplace_back(centre + reach * Eigen::Vector2d(std::cos(t), std::sin(t)));
   }
   return points;
 }
@@ -80,7 +80,7 @@ std::vector<Eigen::Vector2d> circle(const Eigen::Vector2d &centre, double radius
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i < corners; ++i) {
     const double t = first + 2 * M_PI * i / corners;
-    points.push_back(centre + radius * Eigen::Vector2d(std::cos(t), std::sin(t)));
+    points.emplace_back(centre + radius * Eigen::Vector2d(std::cos(t), std::sin(t)));
   }
   return points;
 }
@@ -281,7 +281,7 @@ void vpMapPanel::drawLamps(vpMapSheet &sheet, const std::vector<size_t> &lamps) 
 {
   for (auto lamp = lamps.rbegin(); lamp != lamps.rend(); ++lamp) { // those that count on top
     const std::vector<Eigen::Vector2d> points = outline(m_map.lamps[*lamp], sheet, lamps.size());
-    const cv::Scalar colour = lampColours[static_cast<size_t>(rank(*lamp))];
+    const cv::Scalar &colour = lampColours[static_cast<size_t>(rank(*lamp))];
     sheet.fill(points, 0.45 * colour);
     sheet.drawLine(points, true, colour, 1);
     sheet.avoid(points);

@@ -108,7 +108,7 @@ std::vector<Eigen::Vector2d> pointsOf(const vpLampOutline &outline)
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i < count; ++i) {
     const double t = 2 * M_PI * i / count;
-    points.push_back(outline.centre + std::cos(t) * outline.a * major + std::sin(t) * outline.b * minor);
+    points.emplace_back(outline.centre + std::cos(t) * outline.a * major + std::sin(t) * outline.b * minor);
   }
   return points;
 }

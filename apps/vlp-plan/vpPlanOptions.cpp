@@ -100,7 +100,7 @@ double oscillatorOf(const std::string &text)
 
 std::vector<double> dutiesOf(const std::string &text)
 {
-  const std::vector<double> duties = numbersOf(text, ',');
+  std::vector<double> duties = numbersOf(text, ',');
   bool good = !duties.empty() && duties.size() <= 8 &&
               std::set<double>(duties.begin(), duties.end()).size() == duties.size();
   for (const double duty : duties) {

@@ -120,7 +120,7 @@ Eigen::MatrixXd vpBundleProblem::covariance()
   static const double significant = 3; // standard deviations of the weight
   const double found = m_imageWeight, chance = std::sqrt(0.5 / std::max(1.0, m_imageRedundancy));
   m_imageWeight = found > 1 - significant * chance ? 1 : found;
-  const Eigen::MatrixXd inverse = vpInverseOf(equations().information());
+  Eigen::MatrixXd inverse = vpInverseOf(equations().information());
   m_imageWeight = found;
   return inverse;
 }

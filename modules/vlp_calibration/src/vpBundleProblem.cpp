@@ -54,7 +54,7 @@ vpBundleProblem::vpBundleProblem(const vpLampBundle &bundle, const std::vector<v
     const vpBundleView &view = start.views[i];
     const bool shared = i > 0 && start.views[i - 1].run == view.run && runs[view.run].motion == Motion::spin;
     if (!shared) {
-      m_positions.push_back(view.start.head<2>());
+      m_positions.emplace_back(view.start.head<2>());
     }
     m_poses.push_back({m_positions.back().data(), view.start(2)});
   }

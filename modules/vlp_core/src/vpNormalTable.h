@@ -26,8 +26,8 @@ public:
   static Value at(double z)
   {
     static const vpNormalTable table;
-    const double place = std::clamp(z, -limit, limit), scaled = (place + limit) * perUnit;
-    const auto i = static_cast<size_t>(scaled + 0.5);
+    const double place = std::clamp(z, -limit, limit), nearest = (place + limit) * perUnit + 0.5;
+    const auto i = static_cast<size_t>(nearest);
     const Value &node = table.m_nodes[i];
     const double at = static_cast<double>(i) / perUnit - limit, h = place - at;
     // Derivatives of the density f: -z f, (z^2 - 1) f, (3 z - z^3) f.

@@ -218,7 +218,7 @@ bool describeFix(vpVlpFix &fix, const std::vector<vpLampSight> &lamps, const vpB
     if (!predicted.inFront)
       return false;
     fix.lamps.push_back(lamp.id);
-    fix.residuals.push_back(lamp.ray - predicted.ray);
+    fix.residuals.emplace_back(lamp.ray - predicted.ray);
   }
   fix.wMb = pose.wMb();
   fix.wMc = fix.wMb * rig.bMc;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <sstream>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <visp3/core/vpException.h>

@@ -177,7 +177,7 @@ vpVlpFix vpManyLampSolver::solve(const std::vector<vpLampSight> &lamps, const vp
 
 vpVlpFix vpManyLampSolver::solveMount(const std::vector<vpLampSight> &lamps, const vpVlpRig &rig) const
 {
-  const vpVlpFix pair = vpTwoLampSolver().solveBestPair(lamps, rig);
+  vpVlpFix pair = vpTwoLampSolver().solveBestPair(lamps, rig);
   if (!pair.valid || lamps.size() == 2)
     return pair;
   const std::string problem = weightProblem(lamps);

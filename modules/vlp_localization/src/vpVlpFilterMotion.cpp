@@ -17,6 +17,9 @@
 
 BEGIN_VISP_NAMESPACE
 
+extern template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
+                                             const Eigen::Matrix3d &);
+
 namespace
 {
 double square(double x)

@@ -142,7 +142,7 @@ void vpVlpLocalizer::locate(vpVlpLocation &location)
   }
   if (location.fix.valid && !location.fix.ambiguous) {
     if (!m_lastPose) {
-      m_lastPose.emplace();
+      m_lastPose = LastPose();
     }
     m_lastPose->fix = location.fix;
     m_lastPose->time = location.timestamp;

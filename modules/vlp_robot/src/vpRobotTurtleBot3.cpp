@@ -122,7 +122,7 @@ void vpRobotTurtleBot3::identify()
   m_rounding = vpVelocityRounding(m_geometry.limits(), m_settings.dither);
 
   const vpControlBlock table = readTable(now() + openingTime);
-  const int device = table.get(Table::deviceStatus);
+  const std::int8_t device = table.get(Table::deviceStatus);
   if (device != 0) {
     refuse("device status " + std::to_string(device) + ", expected 0 (-1: no motors; is their power on?)");
   }

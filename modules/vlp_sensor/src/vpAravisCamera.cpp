@@ -34,7 +34,7 @@ class Check
 {
 public:
   Check(int code, std::string doing) : m_code(code), m_doing(std::move(doing)) {}
-  ~Check() noexcept(false)
+  ~Check() noexcept(false) // NOLINT(bugprone-exception-escape): which says that it may throw
   {
     if (m_error != nullptr) {
       const std::string message = m_doing + ": " + m_error->message;

@@ -58,7 +58,7 @@ public:
     return result < 0 ? errno : 0;
   }
 
-  void *map(size_t length, std::uint32_t offset)
+  void *map(size_t length, std::uint32_t offset) const
   {
     return ::mmap(nullptr, length, PROT_READ, MAP_SHARED, m_file, static_cast<off_t>(offset));
   }
@@ -96,7 +96,7 @@ public:
       throw vpException(vpException::badValue, "no camera, expected a video device that captures");
     }
     setFormat(asked);
-    set(asked);
+    V4l2Camera::set(asked);
     startStream();
   }
 

@@ -140,11 +140,11 @@ vpPath vpPath::load(const std::string &filename)
 {
   const vpYamlNode node = vpYamlNode::load(filename);
   try {
-    const vpPath path = read(node);
+    vpPath path = read(node);
     node.finish();
     return path;
   } catch (const vpException &error) { // what a shape refuses knows no file
-    const std::string problem = error.getStringMessage(), own = "path: ";
+    const std::string &problem = error.getStringMessage(), own = "path: ";
     if (problem.rfind(own, 0) == 0) {
       node.fail("", problem.substr(own.size()));
     }

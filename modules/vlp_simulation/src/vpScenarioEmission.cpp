@@ -57,7 +57,7 @@ vpEmission vpScenarioYaml::readEmission(const vpYamlNode &parent, const vpEmissi
     emission = patternOf(node);
   } catch (const vpException &error) {
     // vpEmission knows the ranges and begins with the number's name; the file and the line are this one's.
-    const std::string message = error.getStringMessage();
+    const std::string &message = error.getStringMessage();
     const size_t colon = message.find(": ");
     const std::string key = message.substr(0, colon);
     if (key.find_first_of(":/.") != std::string::npos || !node.has(key)) {

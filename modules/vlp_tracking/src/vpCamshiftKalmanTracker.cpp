@@ -363,7 +363,7 @@ vpTargetTracker::Sighting vpCamshiftKalmanTracker::setRight(const vpImage<unsign
   const double acceleration = m_impl->acceleration;
   const int missed = m_impl->missed;
   const bool moved = m_impl->predicted;
-  const Sighting sighting = beginWith(I, window);
+  Sighting sighting = beginWith(I, window);
   if (moved) {
     m_impl->filter = filter;
     m_impl->acceleration = acceleration;

@@ -201,7 +201,7 @@ std::vector<cv::Point2f> vpChordShape::ends(const vpLedRoi &roi, int samples)
 
 std::vector<cv::Point2f> vpChordShape::outerEnds(const vpLedRoi &roi, int samples)
 {
-  const Points points = ends(roi, samples);
+  Points points = ends(roi, samples);
   if (points.size() < 3) {
     return points;
   }

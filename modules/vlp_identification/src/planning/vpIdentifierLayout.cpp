@@ -80,7 +80,7 @@ public:
         m_random(settings.seed)
   {
     for (const Eigen::Vector3d &position : positions) {
-      m_places.push_back(position.head<2>());
+      m_places.emplace_back(position.head<2>());
     }
     std::iota(m_order.begin(), m_order.end(), 0);
     std::stable_sort(m_order.begin(), m_order.end(),

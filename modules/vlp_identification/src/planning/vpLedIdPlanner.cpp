@@ -276,7 +276,7 @@ vpLedIdPlan vpLedIdPlanner::spread(double lines, double oscillatorPpm, size_t co
     }
   }
   best.resize(std::min(best.size(), count));
-  const vpLedIdPlan plan = judged(best, lines, oscillatorPpm);
+  vpLedIdPlan plan = judged(best, lines, oscillatorPpm);
   if (!isGood(plan.error, plan.acceptance,
               *this)) { // near the limit, where duty needs more room than frequency
     std::vector<vpModulation> all = mostGood(rows, *this, lines, oscillatorPpm).identifiers;

@@ -182,7 +182,7 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I, const std::vector<vp
       }
     }
   }
-  return observe(picture, std::move(rois));
+  return observe(picture, rois);
 }
 
 bool vpLedDetector::reacquire(const vpImage<unsigned char> &I, vpLampObservation &lamp)
@@ -214,7 +214,7 @@ void vpLedDetector::place(vpLampObservation &lamp, const vpOutlineFit &fit, bool
 }
 
 //! All that follows from the regions.
-bool vpLedDetector::observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois)
+bool vpLedDetector::observe(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois)
 {
   std::vector<Region> regions;
   for (const vpLedRoi &roi : rois) {
@@ -289,8 +289,8 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   if (!profile.light.empty() && vpLongestLit(profile) > longestPeriod) {
     return {};
   }
-  const vpStripeFeatures features = analyzed(profile, fit.sound); // parts of a lamp show no whole word
-  static const double explained = 0.01;                           // misfit
+  vpStripeFeatures features = analyzed(profile, fit.sound); // parts of a lamp show no whole word
+  static const double explained = 0.01;                     // misfit
   const bool tells = vpLedIdEvidence::tells(features);
   if ((tells && features.misfit < explained) ||
       features.modulation < (tells ? stripeAnalyzer.minModulation : vpPatchwork::least)) {

@@ -215,7 +215,7 @@ std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripe
   transforms.transform();
   const double perStep = 1 / (length * grid.step), fastest = 0.5 * static_cast<double>(fit.lines().size());
   const int lowest = std::max(1, static_cast<int>(std::ceil(0.7 / fit.span() / perStep))),
-            highest = static_cast<int>(fastest / fit.span() / perStep + 0.5);
+            highest = static_cast<int>(std::lround(fastest / fit.span() / perStep));
   std::vector<Sinusoid> all;
   for (int k = lowest; k <= highest; ++k) {
     all.push_back(fit.at(k * perStep, {transforms.weight(k), transforms.weightTime(k),

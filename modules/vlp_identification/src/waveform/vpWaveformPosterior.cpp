@@ -77,7 +77,7 @@ vpWaveformFit::Posterior vpWaveformFit::posterior()
   reach(exposure) =
       std::max(m_logExposureSigma * m_x(exposure), std::abs(m_x(exposure) - m_profile->exposure));
   const Matrix wide = reach.cwiseAbs2().cwiseInverse().asDiagonal();
-  const Posterior bell{m_x, (m_curvature / m_inflation + wide).inverse()};
+  Posterior bell{m_x, (m_curvature / m_inflation + wide).inverse()};
   // Where exposures follow each other without gaps, what moves few edges from line to line is as bell-shaped
   // as the noise.
   static const double sharp = 0.04; // lines: what one line alone leaves open of an edge in it

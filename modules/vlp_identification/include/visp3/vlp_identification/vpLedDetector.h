@@ -94,7 +94,7 @@ public:
 
 private:
   struct Region;
-  bool observe(const vpLinePicture &picture, std::vector<vpLedRoi> rois);
+  bool observe(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois);
   Region observe(const vpLinePicture &picture, const vpLedRoi &roi);
   void read(const vpLinePicture &picture, Region &region) const;
   vpStripeFeatures analyzed(vpStripeProfile profile, bool unknownWords) const;

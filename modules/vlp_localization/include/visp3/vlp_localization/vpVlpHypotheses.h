@@ -5,7 +5,7 @@
 #ifndef vpVlpHypotheses_h
 #define vpVlpHypotheses_h
 
-#include <visp3/core/vpConfig.h>
+#include <visp3/vlp_core/vpVlpNamespace.h>
 
 BEGIN_VISP_NAMESPACE
 
