@@ -90,8 +90,8 @@ void vpVlpFilter::move(double dt, bool accelerates)
                 0.5 * dt * dt * left.y() * P.row(w);
     P.row(yaw) += dt * P.row(w);
     if (freeAttitude) {
-      P.row(z) += dt * (v.y() * P.row(roll) - v.x() * P.row(pitch) + m_x(roll) * P.row(vy) -
-                        m_x(pitch) * P.row(vx));
+      P.row(z) +=
+          dt * (v.y() * P.row(roll) - v.x() * P.row(pitch) + m_x(roll) * P.row(vy) - m_x(pitch) * P.row(vx));
     }
   };
   carry(m_P);
