@@ -106,7 +106,7 @@ void vpVlpFilter::move(double dt, bool accelerates)
   if (freeAttitude) {
     m_P(roll, roll) += square(tiltDrift) * t;
     m_P(pitch, pitch) += square(tiltDrift) * t;
-    m_P(z, z) += square(claimedTilt) * v.squaredNorm() * t; // what leans may be the camera alone
+    m_P(z, z) += square(rollingTilt) * v.squaredNorm() * t; // what leans may be the camera alone
   }
   if (accelerates) {
     // Accelerations along x and y of b are alike, so that the heading does not matter.

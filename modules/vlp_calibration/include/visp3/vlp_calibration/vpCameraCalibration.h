@@ -79,7 +79,7 @@ VISP_EXPORT std::string vpCameraInfoYaml(const vpCameraEstimate &estimate, vpCam
 /*!
   The camera of such a file. plumb_bob whose only coefficient is k1 becomes ViSP's perspective projection with
   distortion, k1 its kud; equidistant becomes Kannala-Brandt. \throw vpException with file, line, field, what
-  came and what was expected; of plumb_bob with more coefficients, for which ViSP has no camera, too.
+  came and what was expected. ViSP has no camera for more coefficients of plumb_bob: these are refused.
 */
 VISP_EXPORT vpCameraXml vpCameraFromInfo(const std::string &filename);
 

@@ -73,6 +73,7 @@ public:
   double startShare = 0.1;     // of both from start() on, until allowManoeuvre() or setManoeuvreShare()
   double drift = 0.002;        // m/sqrt(s), of z where the robot moves: a floor is not quite flat
   double tiltDrift = 0.05;     // rad/sqrt(s), of roll and pitch where the attitude is free
+  double rollingTilt = 0.004;  // rad/sqrt(Hz), likewise between the plane of b and the way that it goes
   double startPlace = 0.3;     // m, standard deviation of x, y and z at the start, before its lamps are seen
   double startTurn = 0.3;      // rad, likewise of yaw
   double startVelocity = 0.2;  // m/s, likewise
@@ -91,7 +92,8 @@ public:
   double claimedTilt =
       0.004; // rad, widenClaims(): standard deviation added to roll and pitch, each time twice as much
   double claimedPlace = 0.002; // m, likewise to each coordinate of each lamp
-  bool freeAttitude = false;   // roll and pitch change, and are as uncertain as the fix at the start
+  bool freeAttitude = false; // roll and pitch change, and are as uncertain as the fix at the start; the base
+                             // moves along its x and y, not level
 
   enum class Odometry {
     ignored,
