@@ -21,6 +21,9 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 add_compile_options(-Wall -Wextra)
+if(CMAKE_UNITY_BUILD)
+  add_compile_options(-Wno-subobject-linkage) # a source that another includes is not a header
+endif()
 
 # vp_add_module(<name> [REQUIRED] <module>... [OPTIONAL <module>...])
 macro(vp_add_module module_name)

@@ -196,7 +196,8 @@ TEST(MountCalibration, RefusesARobotThatStandsStill)
 
 TEST(MountCalibration, RefusesTooFewPicturesAndSwappedLamps)
 {
-  const World world = worldOf(typicalStep());
+  World world = worldOf(typicalStep());
+  world.frameRate = 4;
   vpLampRun run = drive(world, spin() + square(), 3);
   vpLampMap swapped = world.map;
   std::swap(swapped.lamps[1].position, swapped.lamps[2].position);
@@ -213,7 +214,8 @@ TEST(MountCalibration, RefusesTooFewPicturesAndSwappedLamps)
 //! uncertain.
 TEST(MountCalibration, MapThatDoesNotExplainThePicturesIsInflated)
 {
-  const World world = worldOf(typicalStep());
+  World world = worldOf(typicalStep());
+  world.frameRate = 4;
   const vpLampRun run = drive(world, spin() + square(), 3);
   EXPECT_EQ(vpMountCalibration().solve({run}, rig(), world.map).inflatedLampSigma, 0);
   for (const Eigen::Vector3d &off : {Eigen::Vector3d(0.005, 0, 0), Eigen::Vector3d(0, 0, 0.005)}) {

@@ -25,8 +25,8 @@ const std::string camera = "<camera><name>UB300</name>\n"
                            model + "</camera>\n";
 const std::string xml = "<?xml version=\"1.0\"?>\n<root>\n<!-- mine -->\n" + camera + "</root>\n";
 
-const std::string shutter = "shutter: {row_time_s: 43.1e-6, exposure_s: 50e-6, readout: rows}\n";
-const std::string minimal = "camera: {file: camera.xml, name: UB300}\n" + shutter;
+const std::string shutterLine = "shutter: {row_time_s: 43.1e-6, exposure_s: 50e-6, readout: rows}\n";
+const std::string minimal = "camera: {file: camera.xml, name: UB300}\n" + shutterLine;
 
 //! Replaces \e what, which must be there, in \e text.
 std::string with(std::string text, const std::string &what, const std::string &by)
@@ -189,7 +189,7 @@ TEST(VlpRig, BadFilesAreRefusedWithFileLineAndField)
   const std::string mount = minimal + "mount: {translation_m: [0, 0, 0.19], rotation_rpy_deg: [0, 0, 180]}\n";
   const std::string resize = minimal + "resize: {method: nearest, source_size: [2048, 1536]}\n";
   const std::vector<Bad> all = {
-      {shutter, {":1: camera: missing, expected a mapping"}},
+      {shutterLine, {":1: camera: missing, expected a mapping"}},
       {with(minimal, "{file: camera.xml, name: UB300}", "camera.xml"),
        {":1: camera: camera.xml, expected a mapping"}},
       {with(minimal, ", name: UB300", ""), {":1: camera.name: missing, expected text"}},

@@ -13,6 +13,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <visp3/core/vpException.h>
+#include <visp3/core/vpMath.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
 BEGIN_VISP_NAMESPACE
@@ -20,11 +21,6 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 const double markerShare = 0.7; // of a charuco's square
-
-double square(double x)
-{
-  return x * x;
-}
 
 cv::Ptr<cv::aruco::CharucoBoard> charucoOf(const vpBoard &board)
 {
@@ -169,7 +165,7 @@ double vpBoardSight::offPlane() const
   double squares = 0;
   for (size_t i = 0; i < pixels.size(); ++i) {
     const cv::Vec3d at = H * cv::Vec3d(board[i].x, board[i].y, 1);
-    squares += square(at(0) / at(2) - pixels[i].x) + square(at(1) / at(2) - pixels[i].y);
+    squares += vpMath::sqr(at(0) / at(2) - pixels[i].x) + vpMath::sqr(at(1) / at(2) - pixels[i].y);
   }
   return std::sqrt(squares / static_cast<double>(pixels.size()));
 }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include <opencv2/core.hpp>
+#include <visp3/core/vpMath.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
 #include "vpCameraFit.h"
@@ -18,11 +19,6 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 using Model = vpCameraCalibration::Model;
-
-double square(double x)
-{
-  return x * x;
-}
 
 //! kdu that undoes kud over the picture, by least squares over a grid of its pixels.
 double wayBack(double px, double py, double u0, double v0, double kud, unsigned int width,
@@ -98,7 +94,8 @@ bool liesOnItsBoard(const vpBoardSight &sight)
   for (const cv::Point2f &pixel : sight.pixels) {
     spread += (pixel - middle).dot(pixel - middle);
   }
-  return square(sight.offPlane()) * static_cast<double>(sight.pixels.size()) <= square(most) * spread;
+  return vpMath::sqr(sight.offPlane()) * static_cast<double>(sight.pixels.size()) <=
+         vpMath::sqr(most) * spread;
 }
 } // namespace
 

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include <Eigen/LU>
+#include <visp3/core/vpMath.h>
 
 #include "vpLampGeometry.h"
 
@@ -21,11 +22,6 @@ const double gate = 4;         // standard deviations, beyond which a lamp is no
 const double negligible = 20;  // a place e to this power less likely than the best is forgotten
 const size_t maxPlaces = 2000; // of a picture that as many explain nobody asks which
 const size_t noLamp = vpLampMatch::noLamp;
-
-double square(double x)
-{
-  return x * x;
-}
 
 bool has(const std::vector<size_t> &all, size_t one)
 {
@@ -85,7 +81,7 @@ void vpPlaceSearch::tryPair(size_t i, size_t j)
 {
   const Complex &q = m_seen[i].ray, &other = m_seen[j].ray;
   const double apart = std::abs(other - q);
-  if (square(apart) < square(gate) / 4 * (m_seen[i].variance + m_seen[j].variance)) {
+  if (vpMath::sqr(apart) < vpMath::sqr(gate) / 4 * (m_seen[i].variance + m_seen[j].variance)) {
     return; // shows no heading
   }
   const double heightRange = gate * m_bounds.heightSigma;
@@ -265,7 +261,7 @@ bool vpPlaceSearch::tooFewOnALine(const Place &place) const
     }
   }
   const double across = 0.5 * (norms - std::norm(sum) / weight - std::abs(squares - sum * sum / weight));
-  return across < square(gate) * static_cast<double>(place.count);
+  return across < vpMath::sqr(gate) * static_cast<double>(place.count);
 }
 
 //! Whether another region may be the lamp of region \e i nearly as well, or that region another lamp.
@@ -311,7 +307,7 @@ void vpPlaceSearch::visitLamps(const Place &place, size_t i, double poseVariance
     within(option, expected(place, i, middle), radius, m_near);
     for (size_t lamp : m_near) {
       const double d = distance(place, i, lamp, poseVariance);
-      if (d <= square(gate)) {
+      if (d <= vpMath::sqr(gate)) {
         visit(lamp, option, d);
       }
     }
@@ -327,7 +323,8 @@ vpPlaceSearch::Complex vpPlaceSearch::expected(const Place &place, size_t i, dou
 //! Of the distance between a lamp and the point that the ray of region \e i leads to, in each direction, m^2.
 double vpPlaceSearch::variance(size_t i, double positionSigma, double depth) const
 {
-  return square(std::max(positionSigma, m_settings.mapTolerance)) + square(depth) * m_seen[i].variance;
+  return vpMath::sqr(std::max(positionSigma, m_settings.mapTolerance)) +
+         vpMath::sqr(depth) * m_seen[i].variance;
 }
 
 //! Squared, in standard deviations.
@@ -349,7 +346,7 @@ Eigen::Matrix<double, 2, 4> vpPlaceSearch::byPose(const Place &place, size_t i, 
 
 vpPlaceSearch::Fit vpPlaceSearch::fitOf(const Place &place) const
 {
-  const double prior = 1 / square(m_bounds.heightSigma);
+  const double prior = 1 / vpMath::sqr(m_bounds.heightSigma);
   Eigen::Matrix4d information = Eigen::Vector4d(0, 0, prior, 0).asDiagonal();
   Eigen::Vector4d gradient(0, 0, prior * (m_bounds.height - place.height), 0);
   for (size_t i = 0; i < m_seen.size(); ++i) {
@@ -385,14 +382,14 @@ double vpPlaceSearch::logEvidence(const Place &place) const
       const double depth = lamp.height - place.height;
       sum += m_seen[i].option(lamp)->weight + std::log(m_area / m_settings.strangers) -
              0.5 * distance(place, i, place.lamps[i], 0) +
-             std::log(square(depth) / (2 * M_PI * variance(i, lamp.positionSigma, depth)));
+             std::log(vpMath::sqr(depth) / (2 * M_PI * variance(i, lamp.positionSigma, depth)));
     }
   }
   const double sigma = m_bounds.heightSigma;
   const double room =
-      m_bounds.anywhere ? m_index.area(m_index.highest() - place.height) : M_PI * square(m_bounds.reach);
+      m_bounds.anywhere ? m_index.area(m_index.highest() - place.height) : M_PI * vpMath::sqr(m_bounds.reach);
   const double prior = -std::log(room * 2 * m_bounds.turn * std::sqrt(2 * M_PI) * sigma) -
-                       0.5 * square((place.height - m_bounds.height) / sigma);
+                       0.5 * vpMath::sqr((place.height - m_bounds.height) / sigma);
   const double volume = 2 * std::log(2 * M_PI) + 0.5 * std::log(fitOf(place).covariance.determinant());
   return sum + prior + volume;
 }
@@ -402,7 +399,8 @@ double vpPlaceSearch::logEvidence(const Place &place) const
 double vpPlaceSearch::chance() const
 {
   const double depth = std::max(0.0, 0.5 * (m_index.lowest() + m_index.highest()) - m_bounds.height);
-  const double inView = static_cast<double>(m_index.size()) * square(depth) * m_area / m_index.area(depth);
+  const double inView =
+      static_cast<double>(m_index.size()) * vpMath::sqr(depth) * m_area / m_index.area(depth);
   return std::log(1 + static_cast<double>(m_seen.size()) * inView / m_settings.strangers);
 }
 

@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <visp3/core/vpMath.h>
 
 #include "vpCovarianceColumns.h"
 #include "vpLampGeometry.h"
@@ -20,11 +21,6 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-double square(double x)
-{
-  return x * x;
-}
 
 //! Where the base stands that leans by roll and pitch and heads along yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
 vpBasePose baseOf(const Vector6d &state)
@@ -69,7 +65,7 @@ struct vpVlpFilter::Predicted {
 
 double vpVlpFilter::Innovation::distance(double tolerance) const
 {
-  const Eigen::Matrix2d S = covariance + square(tolerance / depth) * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d S = covariance + vpMath::sqr(tolerance / depth) * Eigen::Matrix2d::Identity();
   return ray.dot(S.inverse() * ray);
 }
 
@@ -108,7 +104,7 @@ void vpVlpFilter::expect(const vpLampSight &lamp)
   const Eigen::Index n = m_x.size();
   m_x.conservativeResizeLike(Vector::Zero(n + 3));
   m_P.conservativeResizeLike(Matrix::Zero(n + 3, n + 3));
-  m_P.bottomRightCorner<3, 3>().diagonal().setConstant(square(placeSigma(lamp)));
+  m_P.bottomRightCorner<3, 3>().diagonal().setConstant(vpMath::sqr(placeSigma(lamp)));
   if (m_aside) {
     m_offset.conservativeResizeLike(Vector::Zero(n + 3));
   }
@@ -171,7 +167,7 @@ vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
       H.add(own + k, -byPlace.col(k).transpose());
     }
   } else {
-    predicted.ownCovariance = square(placeSigma(lamp)) * byPlace * byPlace.transpose();
+    predicted.ownCovariance = vpMath::sqr(placeSigma(lamp)) * byPlace * byPlace.transpose();
   }
   return predicted;
 }

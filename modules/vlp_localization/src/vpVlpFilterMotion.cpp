@@ -13,20 +13,10 @@
 
 #include <Eigen/Geometry>
 #include <visp3/core/vpException.h>
+#include <visp3/core/vpMath.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
 BEGIN_VISP_NAMESPACE
-
-extern template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
-                                             const Eigen::Matrix3d &);
-
-namespace
-{
-double square(double x)
-{
-  return x * x;
-}
-} // namespace
 
 void vpVlpFilter::addOdometry(const vpOdometry &sample)
 {
@@ -102,15 +92,16 @@ void vpVlpFilter::move(double dt, bool accelerates)
 
   const double t = std::abs(dt);
   static const double least = 0.01; // of the drift: lamps' outlines are not wrong anew in every frame
-  m_P(z, z) += square(std::max(m_manoeuvreShare, least) * drift) * t;
+  m_P(z, z) += vpMath::sqr(std::max(m_manoeuvreShare, least) * drift) * t;
   if (freeAttitude) {
-    m_P(roll, roll) += square(tiltDrift) * t;
-    m_P(pitch, pitch) += square(tiltDrift) * t;
-    m_P(z, z) += square(rollingTilt) * v.squaredNorm() * t; // what leans may be the camera alone
+    m_P(roll, roll) += vpMath::sqr(tiltDrift) * t;
+    m_P(pitch, pitch) += vpMath::sqr(tiltDrift) * t;
+    m_P(z, z) += vpMath::sqr(rollingTilt) * v.squaredNorm() * t; // what leans may be the camera alone
   }
   if (accelerates) {
     // Accelerations along x and y of b are alike, so that the heading does not matter.
-    const double a = square(m_manoeuvreShare * acceleration), b = square(m_manoeuvreShare * turnAcceleration);
+    const double a = vpMath::sqr(m_manoeuvreShare * acceleration),
+                 b = vpMath::sqr(m_manoeuvreShare * turnAcceleration);
     const double sign = dt < 0 ? -1 : 1;
     const Eigen::Matrix2d velocityPlace = sign * 0.5 * a * t * t * R.toRotationMatrix();
     m_P.block<2, 2>(x, x).diagonal().array() += a * t * t * t / 3;
@@ -129,7 +120,7 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
 {
   static const double anySpeed = 1, anyTurn = 10; // m/s, rad/s: wheels start and stop within a sample
   for (int i : {vx, vy, w}) {
-    m_P(i, i) += odometry == Odometry::followed ? square(i == w ? anyTurn : anySpeed) : 0;
+    m_P(i, i) += odometry == Odometry::followed ? vpMath::sqr(i == w ? anyTurn : anySpeed) : 0;
   }
   const Eigen::RowVector3d forward = Eigen::RowVector3d::UnitX(), sideways = Eigen::RowVector3d::UnitY(),
                            turning = Eigen::RowVector3d::UnitZ();
@@ -150,9 +141,11 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   // Where speeds change from sample to sample they do so within one.
   static const double within = 0.3; // share of the change, standard deviation
   Eigen::Matrix3d R = Eigen::Matrix3d::Zero();
-  R(0, 0) = square(odometrySpeed) + square(share * sample.v) + square(within * (sample.v - before.v));
-  R(1, 1) = square(sidewaysSpeed);
-  R(2, 2) = square(odometryTurnRate) + square(share * sample.w) + square(within * (sample.w - before.w));
+  R(0, 0) = vpMath::sqr(odometrySpeed) + vpMath::sqr(share * sample.v) +
+            vpMath::sqr(within * (sample.v - before.v));
+  R(1, 1) = vpMath::sqr(sidewaysSpeed);
+  R(2, 2) = vpMath::sqr(odometryTurnRate) + vpMath::sqr(share * sample.w) +
+            vpMath::sqr(within * (sample.w - before.w));
   const Eigen::Vector3d innovation(sample.v - scale * along, -across,
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
   measure<3>(H, innovation - this->aside(H), R);

@@ -10,18 +10,11 @@
 #include <cmath>
 
 #include <Eigen/Geometry>
+#include <visp3/core/vpMath.h>
 
 #include "vpLampGeometry.h"
 
 BEGIN_VISP_NAMESPACE
-
-namespace
-{
-double square(double x)
-{
-  return x * x;
-}
-} // namespace
 
 void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
 {
@@ -53,7 +46,7 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   sigma.segment<2>(roll) =
       freeAttitude
           ? Eigen::Vector2d(startTurn, startTurn)
-          : Eigen::Vector2d(m_rig.rotationSigma.head<2>().array().square() + square(m_extraTiltSigma))
+          : Eigen::Vector2d(m_rig.rotationSigma.head<2>().array().square() + vpMath::sqr(m_extraTiltSigma))
                 .cwiseSqrt()
                 .eval();
   sigma(speedScale) = odometryScale;
@@ -70,11 +63,13 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   m_P.setZero(n, n);
   m_P.diagonal().head<lamps>() = sigma.cwiseAbs2();
   for (size_t k = 0; k < m_lamps.size(); ++k) {
-    m_P.diagonal().segment<3>(lamps + 3 * static_cast<Eigen::Index>(k)).setConstant(square(m_placeSigmas[k]));
+    m_P.diagonal()
+        .segment<3>(lamps + 3 * static_cast<Eigen::Index>(k))
+        .setConstant(vpMath::sqr(m_placeSigmas[k]));
   }
   m_manoeuvreShare = startShare;
   for (int i : {vx, vy, w}) {
-    m_P(i, i) = square(i == w ? startTurnRate : startVelocity);
+    m_P(i, i) = vpMath::sqr(i == w ? startTurnRate : startVelocity);
   }
   m_aside = false;
   m_offset.setZero(n);
@@ -149,7 +144,7 @@ void vpVlpFilter::conclude()
   } else if (m_sights > 1) {
     // In a second, which is what a calm robot's pose averages over, an outline moves on below its stripes.
     static const double alike = 0.3; // px, up to which these hide the same of it
-    const double share = 1 / (1 + square(m_imageSpeed / alike));
+    const double share = 1 / (1 + vpMath::sqr(m_imageSpeed / alike));
     const Eigen::Matrix4d common = share * (1 - m_noise) * m_information.inverse();
     if (common.allFinite() && common.diagonal().minCoeff() > 0) {
       m_common = common;
@@ -170,8 +165,8 @@ void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
                turn = std::sqrt(before.covariance(5, 5)) + turnSigma;
   const auto setVelocity = [&](Index i, double meanVelocity, double error, double random, double prior) {
     // At the end of a way a velocity that walks at random is off its mean by a third of what it walks.
-    const double variance = square(error / since) + square(random) * since / 3,
-                 share = square(prior) / (square(prior) + variance);
+    const double variance = vpMath::sqr(error / since) + vpMath::sqr(random) * since / 3,
+                 share = vpMath::sqr(prior) / (vpMath::sqr(prior) + variance);
     m_x(i) = share * meanVelocity;
     m_P.row(i).setZero();
     m_P.col(i).setZero();

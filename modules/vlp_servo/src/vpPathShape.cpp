@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include <visp3/core/vpMath.h>
 #include <visp3/vlp_core/vpNumberText.h>
 
 BEGIN_VISP_NAMESPACE
@@ -19,10 +20,6 @@ std::string pointText(const Eigen::Vector2d &point)
   return "[" + vpNumberText(point.x()) + ", " + vpNumberText(point.y()) + "]";
 }
 
-double square(double x)
-{
-  return x * x;
-}
 } // namespace
 
 vpPolylineShape::vpPolylineShape(std::vector<Eigen::Vector2d> points, bool closed)
@@ -88,7 +85,7 @@ vpLemniscateShape::vpLemniscateShape(const Eigen::Vector2d &centre, double width
   // ds/dt = a / sqrt(1 + sin^2 t), by Simpson's rule; between these points s is linear to 1e-7 of the width.
   constexpr int steps = 4096;
   const double dt = 2 * M_PI / steps;
-  const auto speed = [this](double t) { return m_half / std::sqrt(1 + square(std::sin(t))); };
+  const auto speed = [this](double t) { return m_half / std::sqrt(1 + vpMath::sqr(std::sin(t))); };
   for (int i = 0; i < steps; ++i) {
     const double t = i * dt;
     m_lengths.push_back(m_lengths.back() + dt / 6 * (speed(t) + 4 * speed(t + dt / 2) + speed(t + dt)));
@@ -103,11 +100,12 @@ vpPathPoint vpLemniscateShape::at(double s) const
   const double t = 2 * M_PI * (end - 1 + share) / static_cast<double>(m_lengths.size() - 1);
   const double sine = std::sin(t), cosine = std::cos(t), root = std::sqrt(1 + sine * sine);
   vpPathPoint point;
-  const double x = m_half * cosine / square(root);
+  const double x = m_half * cosine / vpMath::sqr(root);
   point.place = m_centre + Eigen::Vector2d(x, x * sine);
   // The tangent, times (1 + sin^2 t)^2 / a.
-  const double dx = -sine * (square(root) + 2 * square(cosine));
-  const double dy = (square(cosine) - square(sine)) * square(root) - 2 * square(sine * cosine);
+  const double dx = -sine * (vpMath::sqr(root) + 2 * vpMath::sqr(cosine));
+  const double dy =
+      (vpMath::sqr(cosine) - vpMath::sqr(sine)) * vpMath::sqr(root) - 2 * vpMath::sqr(sine * cosine);
   point.heading = std::atan2(dy, dx);
   point.curvature = 3 * cosine / (m_half * root);
   return point;

@@ -20,7 +20,7 @@ namespace
 {
 constexpr float white = 255;
 
-void expect(const char *field, double came, double least, double most)
+void expectField(const char *field, double came, double least, double most)
 {
   if (!(came >= least && came <= most)) {
     throw vpException(vpException::badValue, std::string("simulated camera: ") + field + ": " +
@@ -49,11 +49,11 @@ vpPhonePicture::vpPhonePicture(const vpSimulatedCamera &camera)
     : m_chromaNoise(camera.chromaNoise), m_clipped(camera.clippedChannels), m_gamma(camera.toneCurve),
       m_sharpening(camera.sharpening), m_jpegQuality(camera.jpegQuality)
 {
-  expect("chroma noise, grey levels", m_chromaNoise, 0, 255);
-  expect("clipped channels", m_clipped, 0, 0.3);
-  expect("tone curve", m_gamma, 0.2, 5);
-  expect("sharpening", m_sharpening, 0, 10);
-  expect("JPEG quality", m_jpegQuality, 0, 100);
+  expectField("chroma noise, grey levels", m_chromaNoise, 0, 255);
+  expectField("clipped channels", m_clipped, 0, 0.3);
+  expectField("tone curve", m_gamma, 0.2, 5);
+  expectField("sharpening", m_sharpening, 0, 10);
+  expectField("JPEG quality", m_jpegQuality, 0, 100);
 }
 
 /*!

@@ -19,9 +19,8 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+using vpScenarioYaml::degree;
 using Range = vpYamlNode::Range;
-
-const double degree = M_PI / 180;
 
 std::string beside(const vpYamlNode &node, const std::string &file)
 {

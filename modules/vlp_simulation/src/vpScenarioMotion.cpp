@@ -14,10 +14,9 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+using vpScenarioYaml::degree;
 using Range = vpYamlNode::Range;
 using Motion = vpScenario::Motion;
-
-const double degree = M_PI / 180;
 
 vpHomogeneousMatrix place(double x, double y, double yaw)
 {

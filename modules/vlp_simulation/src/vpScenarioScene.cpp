@@ -16,9 +16,8 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+using vpScenarioYaml::degree;
 using Range = vpYamlNode::Range;
-
-const double degree = M_PI / 180;
 
 double halfPowerOf(const vpYamlNode &node, double otherwise)
 {

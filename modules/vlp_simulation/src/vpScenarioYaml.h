@@ -5,6 +5,7 @@
 #ifndef vpScenarioYaml_h
 #define vpScenarioYaml_h
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,11 +18,11 @@ BEGIN_VISP_NAMESPACE
 //! Parts of a scenario file. Each finishes the node that it reads.
 namespace vpScenarioYaml
 {
-
-static constexpr double farthest = 1e4;     // m, of any coordinate: no farther does the renderer see
-static constexpr double brightest = 1e6;    // grey value of anything
-static constexpr double longestRun = 21000; // s; the simulated robot ends after 6 hours
-static constexpr double mostFrames = 1e6;   // of a run
+static constexpr double degree = M_PI / 180; // rad
+static constexpr double farthest = 1e4;      // m, of any coordinate: no farther does the renderer see
+static constexpr double brightest = 1e6;     // grey value of anything
+static constexpr double longestRun = 21000;  // s; the simulated robot ends after 6 hours
+static constexpr double mostFrames = 1e6;    // of a run
 
 //! A number from \e least to \e most, \e otherwise where it is left out.
 double between(const vpYamlNode &node, const std::string &key, double least, double most, double otherwise);

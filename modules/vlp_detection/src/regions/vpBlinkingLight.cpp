@@ -18,11 +18,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-cv::Rect grown(const cv::Rect &box, int by)
-{
-  return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
-}
-
 //! Lines, the most that are dark from one band to the next.
 int longestGap(const std::vector<vpLitBand> &bands)
 {
@@ -194,7 +189,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
   const int size = std::max(seed.box.width, seed.box.height), reach = std::max(3, size / 4);
   cv::Rect box = seed.box;
   for (int round = 0; round < rounds; ++round) {
-    const cv::Rect window = grown(box, size) & picture;
+    const cv::Rect window = vpGrown(box, size) & picture;
     vpDemodulation light(lines, lit, window);
     light.drop(others);
     if (light.bands().empty()) {

@@ -12,12 +12,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! A box with more about it.
-cv::Rect grown(const cv::Rect &box, int by)
-{
-  return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
-}
-
 //! Sum of each sample over some lines.
 void addLine(const cv::Mat_<unsigned char> &lines, int line, const cv::Rect &window, std::vector<float> &sum)
 {
@@ -117,7 +111,7 @@ void vpDemodulation::drop(const std::vector<cv::Rect> &others)
 {
   for (vpLitBand &band : m_bands) {
     for (const cv::Rect &box : others) {
-      const cv::Rect other = grown(box, 4 + std::max(box.width, box.height) / 16); // its halo, too
+      const cv::Rect other = vpGrown(box, 4 + std::max(box.width, box.height) / 16); // its halo, too
       const int from = std::max(other.x - m_window.x, 0),
                 to = std::min(other.br().x - m_window.x, m_window.width);
       if (band.last >= other.y && band.first < other.br().y && from < to) {

@@ -12,6 +12,12 @@
 
 BEGIN_VISP_NAMESPACE
 
+//! A box with \e by pixels more on each side.
+inline cv::Rect vpGrown(const cv::Rect &box, int by)
+{
+  return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
+}
+
 //! A few lit lines together: what they have more than the dark lines beside them, sample by sample.
 struct vpLitBand {
   int first, last;                // lines

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include <visp3/core/vpMath.h>
+
 #include "waveform/vpStripeLimits.h"
 
 BEGIN_VISP_NAMESPACE
@@ -20,10 +22,6 @@ const double step = 0.04; // of the logarithm
 // Of the logarithm, by which tone curve and blur change what a lamp shows of it: hardly or notably.
 const std::array<double, 2> softened{0.03, 0.15};
 
-double square(double x)
-{
-  return x * x;
-}
 } // namespace
 
 vpExposureEvidence::vpExposureEvidence(double stated, double logSigma)
@@ -33,7 +31,7 @@ vpExposureEvidence::vpExposureEvidence(double stated, double logSigma)
     const int side = static_cast<int>(std::ceil(sigmas * logSigma / step));
     for (std::vector<double> &log : m_logPosterior) {
       for (int i = -side; i <= side; ++i) {
-        log.push_back(-0.5 * square(i * step / logSigma));
+        log.push_back(-0.5 * vpMath::sqr(i * step / logSigma));
       }
     }
   }
@@ -48,8 +46,9 @@ void vpExposureEvidence::add(const vpStripeFeatures &seen, const vpExposureEvide
   static const double saysNothing = 0.05, mostKnown = 0.95; // shares of the lamps; of what was read
   const double width = seen.exposure * seen.frequency;
   // What was known before is in what was read, and is to count once.
-  const double variance = square(seen.exposureSigma / seen.exposure),
-               share = std::min(variance / square(before.m_logSigma), mostKnown), // that was known before
+  const double variance = vpMath::sqr(seen.exposureSigma / seen.exposure),
+               share =
+                   std::min(variance / vpMath::sqr(before.m_logSigma), mostKnown), // that was known before
       alone = variance / (1 - share), known = std::log(before.m_exposure / m_stated);
   auto byStripes = [&](double exposure) {
     return (std::log(exposure / m_stated) - share * known) / (1 - share);
@@ -60,10 +59,10 @@ void vpExposureEvidence::add(const vpStripeFeatures &seen, const vpExposureEvide
   const double uniform = 1 / (step * static_cast<double>(m_logPosterior.front().size()));
   const int side = static_cast<int>(m_logPosterior.front().size() / 2);
   for (size_t k = 0; k < softened.size(); ++k) {
-    const double sigma = std::sqrt(square(softened[k]) + alone);
+    const double sigma = std::sqrt(vpMath::sqr(softened[k]) + alone);
     for (int i = -side; i <= side; ++i) {
       auto bell = [&](double mean) {
-        return std::exp(-0.5 * square((i * step - mean) / sigma)) / (std::sqrt(2 * M_PI) * sigma);
+        return std::exp(-0.5 * vpMath::sqr((i * step - mean) / sigma)) / (std::sqrt(2 * M_PI) * sigma);
       };
       const double both = (first * bell(fitted) + second * bell(other)) / std::max(first + second, 1e-12);
       m_logPosterior[k][static_cast<size_t>(i + side)] +=
@@ -89,7 +88,7 @@ void vpExposureEvidence::summarise()
       sum += weight;
       first += weight * at;
       // What changes what lamps show of it is common to all of them.
-      second += weight * (at * at + square(softened[k]));
+      second += weight * (at * at + vpMath::sqr(softened[k]));
     }
   }
   first /= sum;

@@ -11,6 +11,8 @@
 #include <optional>
 #include <string>
 
+#include <visp3/core/vpMath.h>
+
 #include "vpMergedPulses.h"
 #include "vpNormalTail.h"
 #include "waveform/vpDutyRidge.h"
@@ -24,11 +26,6 @@ using Signal = vpStripeFeatures::Signal;
 
 const double leastProbability = 1e-3; // of a candidate that is handed on
 const double farthestRowTime = 4.5;   // standard deviations of the row time that are looked at
-
-double square(double x)
-{
-  return x * x;
-}
 
 double normalDensity(double z, double sigma)
 {
@@ -156,7 +153,7 @@ void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const st
     double least = std::numeric_limits<double>::infinity(); // gates^2, from the nearest likely row time
     for (size_t k = 0; k < errors.size(); ++k) {
       const double off = candidate.seen - candidate.frequency * (1 + errors[k]);
-      least = std::min(least, square(off / reach) - 2 * std::log(weights[k] / most) / square(gate));
+      least = std::min(least, vpMath::sqr(off / reach) - 2 * std::log(weights[k] / most) / vpMath::sqr(gate));
     }
     candidate.fits = candidate.fits && least < 1;
     candidate.probability = 0;
@@ -323,7 +320,7 @@ vpRowTimeError vpLedIdRecognizer::recognize(std::vector<vpLampObservation> &lamp
   std::vector<std::vector<double>> logs; // of each lamp's evidence at each error
   std::vector<double> together;
   for (double error : errors) {
-    together.push_back(m_relativeRowTime > 0 ? -0.5 * square(error / m_relativeRowTime) : 0);
+    together.push_back(m_relativeRowTime > 0 ? -0.5 * vpMath::sqr(error / m_relativeRowTime) : 0);
   }
   for (const Sight &sight : sights) {
     logs.emplace_back(errors.size(), 0.0);
@@ -355,9 +352,9 @@ vpRowTimeError vpLedIdRecognizer::recognize(std::vector<vpLampObservation> &lamp
   const std::vector<double> weights = normalised(std::move(together));
   for (size_t k = 0; k < errors.size(); ++k) {
     error.mean -= weights[k] * errors[k]; // longer lines make slower stripes of the same lamp
-    error.sigma += weights[k] * square(errors[k]);
+    error.sigma += weights[k] * vpMath::sqr(errors[k]);
   }
-  error.sigma = std::sqrt(std::max(0.0, error.sigma - square(error.mean)));
+  error.sigma = std::sqrt(std::max(0.0, error.sigma - vpMath::sqr(error.mean)));
   return error;
 }
 

@@ -8,15 +8,12 @@
 #include <cmath>
 #include <limits>
 
+#include <visp3/core/vpMath.h>
+
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
-double square(double x)
-{
-  return x * x;
-}
-
 double normalDensity(double z, double sigma)
 {
   return std::exp(-0.5 * z * z) / (std::sqrt(2 * M_PI) * sigma);
@@ -39,7 +36,7 @@ struct Moments {
     second += w * (value * value + variance);
   }
   double mean() const { return first / weight; }
-  double sigma() const { return std::sqrt(std::max(0.0, second / weight - square(mean()))); }
+  double sigma() const { return std::sqrt(std::max(0.0, second / weight - vpMath::sqr(mean()))); }
 };
 } // namespace
 
@@ -68,10 +65,10 @@ vpDutyRidge::Reading vpDutyRidge::of(const vpStripeFeatures &seen, const std::op
       const double likelihood = width * std::exp(-0.5 * slice.chiSquare),
                    weight = likelihood * normalDensity(z, sigma);
       all += likelihood;
-      frequency.add(weight, slice.frequency - seen.frequency, square(slice.frequencySigma));
-      duty.add(weight, slice.duty, square(width) / 12);
+      frequency.add(weight, slice.frequency - seen.frequency, vpMath::sqr(slice.frequencySigma));
+      duty.add(weight, slice.duty, vpMath::sqr(width) / 12);
       middle.add(weight, slice.frequency - seen.frequency, 0);
-      least = std::min(least, slice.chiSquare + square(z));
+      least = std::min(least, slice.chiSquare + vpMath::sqr(z));
     }
   }
   if (!(frequency.weight > 0)) {
@@ -105,11 +102,11 @@ vpDutySlice vpDutyRidge::at(const vpStripeFeatures &seen, double duty)
 {
   const std::vector<vpDutySlice> &slices = seen.alongDuty;
   if (slices.size() < 2) {
-    return {duty, seen.frequency, seen.frequencySigma, square((duty - seen.duty) / seen.dutySigma)};
+    return {duty, seen.frequency, seen.frequencySigma, vpMath::sqr((duty - seen.duty) / seen.dutySigma)};
   }
   static const double sharply = 0.01; // duty, per standard deviation
   auto beyond = [duty](vpDutySlice slice) {
-    slice.chiSquare += square((duty - slice.duty) / sharply);
+    slice.chiSquare += vpMath::sqr((duty - slice.duty) / sharply);
     slice.duty = duty;
     return slice;
   };
@@ -131,12 +128,12 @@ std::vector<vpDutySlice> vpDutyRidge::together(const vpStripeFeatures &one, cons
   double least = std::numeric_limits<double>::infinity();
   for (vpDutySlice &slice : slices) {
     const vpDutySlice a = at(one, slice.duty), b = at(other, slice.duty);
-    const double weight = 1 / square(a.frequencySigma), more = 1 / square(b.frequencySigma);
+    const double weight = 1 / vpMath::sqr(a.frequencySigma), more = 1 / vpMath::sqr(b.frequencySigma);
     slice.frequency = (weight * a.frequency + more * b.frequency) / (weight + more);
     slice.frequencySigma = 1 / std::sqrt(weight + more);
-    slice.chiSquare =
-        a.chiSquare + b.chiSquare +
-        square(a.frequency - b.frequency) / (square(a.frequencySigma) + square(b.frequencySigma));
+    slice.chiSquare = a.chiSquare + b.chiSquare +
+                      vpMath::sqr(a.frequency - b.frequency) /
+                          (vpMath::sqr(a.frequencySigma) + vpMath::sqr(b.frequencySigma));
     least = std::min(least, slice.chiSquare);
   }
   for (vpDutySlice &slice : slices) {

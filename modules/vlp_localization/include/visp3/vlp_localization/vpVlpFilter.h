@@ -316,6 +316,9 @@ private:
   double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 
+extern template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
+                                             const Eigen::Matrix3d &);
+
 END_VISP_NAMESPACE
 
 #endif
