@@ -1,0 +1,285 @@
+/*
+ * visp_vlp: visible light positioning for ViSP.
+ * SPDX-License-Identifier: GPL-2.0-or-later
+ */
+// The nodes of apps/ros as separate processes about one master, which run-nodes.sh starts.
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <geometry_msgs/Twist.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <rosgraph_msgs/Log.h>
+#include <sensor_msgs/Image.h>
+#include <visp_vlp/GetImage.h>
+#include <visp_vlp/LampObservations.h>
+#include <visp_vlp/LedInfo.h>
+#include <visp_vlp/VlpLocation.h>
+
+#include "common/vpProcess.h"
+
+namespace
+{
+const std::string data = VLP_DATA_DIR, rig = data + "/rigs/ub300-800x600.yaml",
+                  lamps = data + "/lamps/paper.yaml";
+
+double now()
+{
+  return ros::Time::now().toSec();
+}
+
+//! Lets callbacks run until \e done, or for so many seconds. \return Whether it was done.
+bool spinUntil(const std::function<bool()> &done, double seconds)
+{
+  const double begin = now();
+  while (!done() && now() - begin < seconds) {
+    ros::spinOnce();
+    ros::Duration(0.005).sleep();
+  }
+  return done();
+}
+
+//! A robot and its nodes, all in one namespace.
+class Robot
+{
+public:
+  explicit Robot(const std::string &name) : m_name(name)
+  {
+    start("simulator", {"_scenario:=" + data + "/scenarios/servo.yaml", "_start_x:=-0.35"});
+    for (const std::string node : {"CamKF", "ID_recognition", "vlc_locator"}) {
+      startNode(node);
+    }
+  }
+
+  void startNode(const std::string &node) { start(node, {"_rig:=" + rig, "_lamps:=" + lamps}); }
+
+  void start(const std::string &node, std::vector<std::string> arguments, const std::string &as = "")
+  {
+    arguments.push_back("__ns:=/" + m_name);
+    m_nodes[as.empty() ? node : as] = std::make_unique<vpProcess>(node, arguments);
+  }
+  void kill(const std::string &node) { m_nodes.erase(node); } // by SIGKILL
+  vpProcess &node(const std::string &name) { return *m_nodes.at(name); }
+
+private:
+  std::string m_name;
+  std::map<std::string, std::unique_ptr<vpProcess>> m_nodes;
+};
+
+//! What a robot's topics said.
+class Listener
+{
+public:
+  struct Place {
+    double stamp, heard, x, y; // s, s, m, m
+  };
+  std::vector<Place> truth, location, inOne;
+  std::vector<Place> commands; // x: m/s
+
+  explicit Listener(const std::string &robot)
+  {
+    m_subscribers = {
+        m_nh.subscribe<geometry_msgs::PoseStamped>("/" + robot + "/ground_truth", 1000,
+                                                   [this](const geometry_msgs::PoseStampedConstPtr &pose) {
+                                                     truth.push_back({pose->header.stamp.toSec(), now(),
+                                                                      pose->pose.position.x,
+                                                                      pose->pose.position.y});
+                                                   }),
+        m_nh.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+            "/" + robot + "/location", 1000,
+            [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr &pose) { add(*pose, location); }),
+        m_nh.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+            "/" + robot + "/one/location", 1000,
+            [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr &pose) { add(*pose, inOne); }),
+        m_nh.subscribe<geometry_msgs::Twist>("/" + robot + "/cmd_vel", 1000,
+                                             [this](const geometry_msgs::TwistConstPtr &twist) {
+                                               commands.push_back({now(), now(), twist->linear.x, 0});
+                                             })};
+  }
+
+  //! m, distance from the truth, of those whose frame was taken from \e begin (s) on.
+  std::vector<double> errors(const std::vector<Place> &places, double begin) const
+  {
+    std::vector<double> errors;
+    for (const Place &place : places) {
+      const auto after = std::lower_bound(truth.begin(), truth.end(), place.stamp,
+                                          [](const Place &each, double time) { return each.stamp < time; });
+      if (place.stamp < begin || after == truth.begin() || after == truth.end()) {
+        continue;
+      }
+      const auto before = std::prev(after);
+      const double share = (place.stamp - before->stamp) / (after->stamp - before->stamp);
+      errors.push_back(std::hypot(before->x + share * (after->x - before->x) - place.x,
+                                  before->y + share * (after->y - before->y) - place.y));
+    }
+    return errors;
+  }
+
+private:
+  static void add(const geometry_msgs::PoseWithCovarianceStamped &pose, std::vector<Place> &to)
+  {
+    to.push_back({pose.header.stamp.toSec(), now(), pose.pose.pose.position.x, pose.pose.pose.position.y});
+  }
+
+  ros::NodeHandle m_nh;
+  std::vector<ros::Subscriber> m_subscribers;
+};
+
+double rms(const std::vector<double> &values)
+{
+  double sum = 0;
+  for (double value : values) {
+    sum += value * value;
+  }
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double quantile(std::vector<double> values, double share)
+{
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, static_cast<size_t>(share * static_cast<double>(values.size())))];
+}
+
+// The same pictures go through four nodes and through one: their errors along line A are alike.
+TEST(RosNodes, DriveLineAAsInOneProcess)
+{
+  Robot robot("drive");
+  robot.start("vlp", {"_rig:=" + rig, "_lamps:=" + lamps, "_base_frame:=one", "location:=one/location",
+                      "vlp_location:=one/vlp_location", "lamps:=one/lamps"});
+  Listener heard("drive");
+  ASSERT_TRUE(spinUntil([&] { return heard.location.size() > 10 && heard.inOne.size() > 10; }, 20));
+  const double begin = now();
+  robot.start("vlp_servo", {"_path:=" + data + "/paths/line-a.yaml", "_speed:=0.1"});
+  ASSERT_TRUE(spinUntil([&] { return robot.node("vlp_servo").ended(); }, 30));
+  EXPECT_EQ(robot.node("vlp_servo").wait(), 0) << robot.node("vlp_servo").err();
+  spinUntil([] { return false; }, 0.3);
+
+  EXPECT_NEAR(heard.truth.back().x, 0.35, 0.005);
+  EXPECT_NEAR(heard.truth.back().y, -0.005, 0.005);
+  ASSERT_FALSE(heard.commands.empty());
+  EXPECT_EQ(heard.commands.back().x, 0);
+  const std::vector<double> four = heard.errors(heard.location, begin),
+                            one = heard.errors(heard.inOne, begin);
+  ASSERT_GT(four.size(), 60u); // 7 s at 12 Hz
+  ASSERT_GT(one.size(), 60u);
+  EXPECT_LT(rms(four), 0.001);
+  EXPECT_LT(rms(four), 1.1 * rms(one) + 5e-6); // 5 um: the truth between two samples
+  std::vector<double> latency;
+  for (const Listener::Place &place : heard.location) {
+    latency.push_back(place.heard - place.stamp);
+  }
+  std::cout << "four nodes: " << four.size() << " poses, error rms " << 1e3 * rms(four) << " mm, 95 % "
+            << 1e3 * quantile(four, 0.95) << " mm; one process: " << one.size() << " poses, rms "
+            << 1e3 * rms(one) << " mm; from the first line's exposure to the message: median "
+            << 1e3 * quantile(latency, 0.5) << " ms, 95 % " << 1e3 * quantile(latency, 0.95) << " ms\n";
+}
+
+// Each node is killed in the middle of a drive and started again: the robot stands, poses come back, it goes
+// on.
+TEST(RosNodes, ANodeThatIsKilledComesBack)
+{
+  Robot robot("killed");
+  Listener heard("killed");
+  ASSERT_TRUE(spinUntil([&] { return heard.location.size() > 10; }, 20));
+  robot.start("vlp_servo", {"_path:=" + data + "/paths/line-a.yaml", "_speed:=0.05"});
+  for (const std::string node : {"vlc_locator", "CamKF", "ID_recognition"}) {
+    SCOPED_TRACE(node);
+    ASSERT_TRUE(spinUntil([&] { return !heard.commands.empty() && heard.commands.back().x > 0.03; }, 20));
+    robot.kill(node);
+    if (node != "ID_recognition") { // without which lamps that are followed keep their names
+      ASSERT_TRUE(spinUntil([&] { return heard.commands.back().x == 0; }, 2)) << "it drives on";
+    }
+    spinUntil([] { return false; }, 0.5);
+    const size_t poses = heard.location.size();
+    robot.startNode(node);
+    const double begin = now();
+    ASSERT_TRUE(spinUntil([&] { return heard.location.size() > poses; }, 2));
+    std::cout << node << ": a pose again " << now() - begin << " s after its start\n";
+  }
+  ASSERT_TRUE(spinUntil([&] { return robot.node("vlp_servo").ended(); }, 40));
+  EXPECT_EQ(robot.node("vlp_servo").wait(), 0) << robot.node("vlp_servo").err();
+  EXPECT_LT(quantile(heard.errors(heard.location, 0), 1), 0.005);
+}
+
+TEST(RosNodes, BadMessagesAreOneClearLine)
+{
+  ros::NodeHandle nh;
+  std::string log;
+  const ros::Subscriber rosout = nh.subscribe<rosgraph_msgs::Log>(
+      "/rosout_agg", 100, [&](const rosgraph_msgs::LogConstPtr &line) { log += line->msg + "\n"; });
+  vpProcess tracker("CamKF", {"__ns:=/bad", "_rig:=" + rig}),
+      locator("vlc_locator", {"__ns:=/bad", "_rig:=" + rig, "_lamps:=" + lamps});
+  ros::Publisher images = nh.advertise<sensor_msgs::Image>("/bad/camera/image", 1),
+                 seen = nh.advertise<visp_vlp::LampObservations>("/bad/lamp_observations", 1);
+  ASSERT_TRUE(spinUntil(
+      [&] {
+        return images.getNumSubscribers() > 0 && seen.getNumSubscribers() > 0 &&
+               rosout.getNumPublishers() > 0;
+      },
+      10));
+  const auto expectLine = [&](const auto &publish, const std::string &line) {
+    const double begin = now();
+    double last = 0;
+    EXPECT_TRUE(spinUntil(
+        [&] {
+          if (now() - last > 0.3) {
+            last = now();
+            publish();
+          }
+          return log.find(line) != std::string::npos;
+        },
+        5))
+        << line << "\n"
+        << log << now() - begin;
+  };
+  sensor_msgs::Image image;
+  image.width = 800;
+  image.height = 600;
+  image.step = 800;
+  image.encoding = "16UC1";
+  expectLine([&] { images.publish(image); }, "image.encoding: '16UC1', expected mono8");
+  image.encoding = "mono8";
+  image.data.resize(10);
+  expectLine([&] { images.publish(image); },
+             "image.data: 10 bytes in steps of 800, expected a picture of 800 x 600");
+  image.width = image.step = 320;
+  image.data.resize(320 * 600);
+  expectLine([&] { images.publish(image); }, "320");
+  visp_vlp::LampObservations lampsSeen;
+  lampsSeen.width = 640;
+  expectLine([&] { seen.publish(lampsSeen); },
+             "lamp_observations: of pictures of 640 x 0, expected the rig's 800 x 600");
+  lampsSeen.width = 800;
+  lampsSeen.height = 600;
+  lampsSeen.lamps.resize(1);
+  lampsSeen.lamps[0].u = std::nan("");
+  expectLine([&] { seen.publish(lampsSeen); }, "lamp.u: nan, expected a finite number");
+  EXPECT_FALSE(tracker.ended());
+  EXPECT_FALSE(locator.ended());
+}
+
+TEST(RosNodes, AMissingParameterIsNamed)
+{
+  vpProcess locator("vlc_locator", {"__ns:=/missing", "_rig:=" + rig});
+  EXPECT_EQ(locator.wait(), 2);
+  EXPECT_NE(locator.err().find("/missing/vlc_locator/lamps: missing, expected the name of a lamps.yaml"),
+            std::string::npos)
+      << locator.err();
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_nodes");
+  const ros::NodeHandle nh;
+  return RUN_ALL_TESTS();
+}
