@@ -182,6 +182,29 @@ TEST(RosNodes, DriveLineAAsInOneProcess)
             << 1e3 * quantile(latency, 0.5) << " ms, 95 % " << 1e3 * quantile(latency, 0.95) << " ms\n";
 }
 
+// Pictures as JPEG, and without loss, to a second localizer: what compression costs.
+TEST(RosNodes, CompressedPicturesDoAsWell)
+{
+  for (const int quality : {90, 0}) {
+    SCOPED_TRACE(quality);
+    const std::string name = "quality" + std::to_string(quality);
+    Robot robot(name);
+    robot.kill("simulator");
+    robot.start("simulator", {"_scenario:=" + data + "/scenarios/servo.yaml", "_start_x:=-0.35",
+                              "_jpeg_quality:=" + std::to_string(quality)});
+    robot.start("vlp",
+                {"_rig:=" + rig, "_lamps:=" + lamps, "_image_transport:=compressed", "_base_frame:=one",
+                 "location:=one/location", "vlp_location:=one/vlp_location", "lamps:=one/lamps"});
+    Listener heard(name);
+    ASSERT_TRUE(spinUntil([&] { return heard.location.size() > 30 && heard.inOne.size() > 30; }, 30));
+    const std::vector<double> raw = heard.errors(heard.location, 0),
+                              compressed = heard.errors(heard.inOne, 0);
+    EXPECT_LT(rms(compressed), quality == 0 ? 1.1 * rms(raw) + 5e-6 : 0.001);
+    std::cout << (quality == 0 ? "PNG" : "JPEG") << ": error rms " << 1e3 * rms(compressed)
+              << " mm, of raw pictures " << 1e3 * rms(raw) << " mm\n";
+  }
+}
+
 // Each node is killed in the middle of a drive and started again: the robot stands, poses come back, it goes
 // on.
 TEST(RosNodes, ANodeThatIsKilledComesBack)

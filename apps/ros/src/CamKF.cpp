@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <map>
 
-#include <image_transport/image_transport.h>
 #include <sensor_msgs/image_encodings.h>
 #include <visp3/vlp_tracking/vpLampTracker.h>
 #include <visp_vlp/GetImage.h>
 
+#include "vpPictures.h"
 #include "vpRosMessages.h"
 #include "vpRosNode.h"
 
@@ -114,34 +114,33 @@ class CamKF
 {
 public:
   CamKF()
-      : m_rig(vpRigParameter(m_own)), m_tracker(m_rig, vpLampMap()), m_names(m_nh), m_transport(m_nh),
+      : m_rig(vpRigParameter(m_own)), m_tracker(m_rig, vpLampMap()), m_names(m_nh),
         m_lamps(m_nh.advertise<visp_vlp::LampObservations>("lamp_observations", 10)),
-        m_pictures(
-            m_transport.subscribe("camera/image", 1, &CamKF::look, this,
-                                  image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay())))
+        m_pictures(m_nh, m_own,
+                   [this](const vpVlpFrame &frame, const std_msgs::Header &header) { look(frame, header); })
   {
   }
 
 private:
-  void look(const sensor_msgs::ImageConstPtr &image)
+  void look(const vpVlpFrame &frame, const std_msgs::Header &header)
   {
-    vpHandle([&] {
-      const vpVlpFrame frame = vpRosMessages::frame(*image);
-      if (frame.timestamp <= m_last) { // the clock was set back, or a bag began anew
-        m_tracker.reset();
-      }
-      m_last = frame.timestamp;
-      std::vector<vpLampObservation> lamps = m_tracker.track(frame);
-      m_names.give(frame, lamps);
-      visp_vlp::LampObservations message;
-      message.header = image->header;
-      message.width = image->width;
-      message.height = image->height;
-      for (const vpLampObservation &lamp : lamps) {
-        message.lamps.push_back(vpRosMessages::lamp(lamp));
-      }
-      m_lamps.publish(message);
-    });
+    if (frame.timestamp <= m_last) { // the clock was set back, or a bag began anew
+      ROS_WARN_THROTTLE(
+          1, "camera/image: a frame of %.6f s after one of %.6f s; all lamps are searched for anew",
+          frame.timestamp, m_last);
+      m_tracker.reset();
+    }
+    m_last = frame.timestamp;
+    std::vector<vpLampObservation> lamps = m_tracker.track(frame);
+    m_names.give(frame, lamps);
+    visp_vlp::LampObservations message;
+    message.header = header;
+    message.width = frame.I.getWidth();
+    message.height = frame.I.getHeight();
+    for (const vpLampObservation &lamp : lamps) {
+      message.lamps.push_back(vpRosMessages::lamp(lamp));
+    }
+    m_lamps.publish(message);
   }
 
   ros::NodeHandle m_nh, m_own{"~"};
@@ -149,9 +148,8 @@ private:
   vpLampTracker m_tracker;
   Names m_names;
   double m_last = 0; // s, of the last frame
-  image_transport::ImageTransport m_transport;
   ros::Publisher m_lamps;
-  image_transport::Subscriber m_pictures; // last: it uses all of the above
+  vpPictureSubscriber m_pictures; // last: it uses all of the above
 };
 } // namespace
 

@@ -8,12 +8,12 @@
 #include <memory>
 #include <optional>
 
-#include <image_transport/image_transport.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_sensor/vpCameraSource.h>
 #include <visp3/vlp_sensor/vpPictureSequence.h>
 #include <visp3/vlp_sensor/vpResizedSource.h>
 
+#include "vpPictures.h"
 #include "vpRosMessages.h"
 #include "vpRosNode.h"
 
@@ -73,15 +73,12 @@ void run()
 {
   ros::NodeHandle nh, own("~");
   const vpVlpRig rig = vpRigParameter(own);
-  const std::string frameId = own.param<std::string>("frame_id", "camera");
   const bool live = vpCameraSource::isUri(own.param<std::string>("camera", ""));
   const std::unique_ptr<vpFrameSource> camera = open(own, rig);
   Replay replay;
   ros::Publisher shutter = nh.advertise<visp_vlp::RollingShutter>("camera/rolling_shutter", 1, true);
   shutter.publish(vpRosMessages::rollingShutter(rig.shutter));
-  image_transport::ImageTransport transport(nh);
-  image_transport::CameraPublisher pictures = transport.advertiseCamera("camera/image", 1);
-  sensor_msgs::CameraInfo info = vpRosMessages::cameraInfo(rig);
+  vpPicturePublisher pictures(nh, own, rig);
   vpVlpFrame frame;
   while (ros::ok()) {
     try {
@@ -95,9 +92,7 @@ void run()
     if (!live) {
       replay.wait(frame);
     }
-    const sensor_msgs::Image image = vpRosMessages::image(frame, frameId);
-    info.header = image.header;
-    pictures.publish(image, info);
+    pictures.publish(frame);
     ros::spinOnce();
   }
 }

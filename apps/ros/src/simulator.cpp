@@ -9,11 +9,11 @@
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/Twist.h>
-#include <image_transport/image_transport.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_servo/vpPoseSource.h>
 #include <visp3/vlp_servo/vpServoSimulation.h>
 
+#include "vpPictures.h"
 #include "vpRosMessages.h"
 #include "vpRosNode.h"
 
@@ -33,9 +33,7 @@ public:
                 {own.param("start_x", 0.0), own.param("start_y", 0.0), own.param("start_yaw", 0.0)}, now),
         m_timeout(own.param("command_timeout", 0.5)),
         m_odomFrame(own.param<std::string>("odom_frame", "odom")),
-        m_baseFrame(own.param<std::string>("base_frame", "base_link")),
-        m_cameraFrame(own.param<std::string>("frame_id", "camera")), m_transport(m_nh),
-        m_pictures(m_transport.advertiseCamera("camera/image", 1)),
+        m_baseFrame(own.param<std::string>("base_frame", "base_link")), m_pictures(m_nh, own, m_world.rig()),
         m_odom(m_nh.advertise<nav_msgs::Odometry>("odom", 100)),
         m_truth(m_nh.advertise<geometry_msgs::PoseStamped>("ground_truth", 100)),
         m_commands(
@@ -89,14 +87,11 @@ private:
 
   void takePictures()
   {
-    sensor_msgs::CameraInfo info = vpRosMessages::cameraInfo(m_world.rig());
     vpVlpFrame frame;
     while (ros::ok()) {
       vpHandle([&] {
         if (m_world.next(frame)) {
-          const sensor_msgs::Image image = vpRosMessages::image(frame, m_cameraFrame);
-          info.header = image.header;
-          m_pictures.publish(image, info);
+          m_pictures.publish(frame);
         }
       });
     }
@@ -105,9 +100,8 @@ private:
   ros::NodeHandle m_nh;
   vpLiveSimulation m_world;
   double m_timeout; // s, after the last command, when the robot stands
-  std::string m_odomFrame, m_baseFrame, m_cameraFrame;
-  image_transport::ImageTransport m_transport;
-  image_transport::CameraPublisher m_pictures;
+  std::string m_odomFrame, m_baseFrame;
+  vpPicturePublisher m_pictures;
   ros::Publisher m_odom, m_truth;
   ros::Subscriber m_commands;
   ros::Timer m_timer;

@@ -4,10 +4,10 @@
  */
 // All in one process: from pictures and odometry to the robot's pose.
 
-#include <image_transport/image_transport.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
 #include "vpLocationOutputs.h"
+#include "vpPictures.h"
 #include "vpRosMessages.h"
 #include "vpRosNode.h"
 
@@ -18,11 +18,10 @@ class Vlp
 public:
   explicit Vlp(const ros::NodeHandle &own)
       : m_map(vpLampsParameter(own)), m_localizer(vpRigParameter(own), m_map), m_outputs(m_nh, own, m_map),
-        m_transport(m_nh),
         m_odometry(m_nh.subscribe("odom", 100, &Vlp::move, this, ros::TransportHints().tcpNoDelay())),
-        m_pictures(
-            m_transport.subscribe("camera/image", 1, &Vlp::locate, this,
-                                  image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay())))
+        m_pictures(m_nh, own, [this](const vpVlpFrame &frame, const std_msgs::Header &) {
+          m_outputs.publish(m_localizer.process(frame));
+        })
   {
   }
 
@@ -35,18 +34,12 @@ private:
     });
   }
 
-  void locate(const sensor_msgs::ImageConstPtr &image)
-  {
-    vpHandle([&] { m_outputs.publish(m_localizer.process(vpRosMessages::frame(*image))); });
-  }
-
   ros::NodeHandle m_nh;
   vpLampMap m_map;
   vpVlpLocalizer m_localizer;
   vpLocationOutputs m_outputs;
-  image_transport::ImageTransport m_transport;
   ros::Subscriber m_odometry;
-  image_transport::Subscriber m_pictures; // last: it uses all of the above
+  vpPictureSubscriber m_pictures; // last: it uses all of the above
 };
 } // namespace
 
