@@ -276,6 +276,10 @@ TEST(RosNodes, BadMessagesAreOneClearLine)
   image.width = image.step = 320;
   image.data.resize(320 * 600);
   expectLine([&] { images.publish(image); }, "320");
+  image.width = image.step = 800;
+  image.data.resize(800 * 600);
+  image.header.stamp = ros::Time(100);
+  expectLine([&] { images.publish(image); }, "the clock stands still, the frame is dropped");
   visp_vlp::LampObservations lampsSeen;
   lampsSeen.width = 640;
   expectLine([&] { seen.publish(lampsSeen); },

@@ -124,10 +124,16 @@ public:
 private:
   void look(const vpVlpFrame &frame, const std_msgs::Header &header)
   {
-    if (frame.timestamp <= m_last) { // the clock was set back, or a bag began anew
-      ROS_WARN_THROTTLE(
-          1, "camera/image: a frame of %.6f s after one of %.6f s; all lamps are searched for anew",
-          frame.timestamp, m_last);
+    if (frame.timestamp <= m_last) {
+      static const double setBack = 1; // s
+      const bool anew = frame.timestamp <= m_last - setBack;
+      ROS_WARN_THROTTLE(1, "camera/image: stamp %.6f s, expected one later than the frame before, %.6f s: %s",
+                        frame.timestamp, m_last,
+                        anew ? "the clock was set back, all lamps are searched for anew"
+                             : "the clock stands still, the frame is dropped");
+      if (!anew) {
+        return;
+      }
       m_tracker.reset();
     }
     m_last = frame.timestamp;

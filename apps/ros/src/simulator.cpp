@@ -8,7 +8,9 @@
 #include <thread>
 
 #include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/Twist.h>
+#include <tf2_ros/transform_broadcaster.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_servo/vpPoseSource.h>
 #include <visp3/vlp_servo/vpServoSimulation.h>
@@ -77,6 +79,13 @@ private:
       odom.twist.twist.linear.x = sample.v;
       odom.twist.twist.angular.z = sample.w;
       m_odom.publish(odom);
+      geometry_msgs::TransformStamped transform;
+      transform.header = odom.header;
+      transform.child_frame_id = m_baseFrame;
+      transform.transform.translation.x = odom.pose.pose.position.x;
+      transform.transform.translation.y = odom.pose.pose.position.y;
+      transform.transform.rotation = odom.pose.pose.orientation;
+      m_transforms.sendTransform(transform);
       geometry_msgs::PoseStamped truth;
       truth.header.stamp = odom.header.stamp;
       truth.header.frame_id = "map";
@@ -103,6 +112,7 @@ private:
   std::string m_odomFrame, m_baseFrame;
   vpPicturePublisher m_pictures;
   ros::Publisher m_odom, m_truth;
+  tf2_ros::TransformBroadcaster m_transforms;
   ros::Subscriber m_commands;
   ros::Timer m_timer;
   double m_commanded = 0;       // s, of the last command; 0: it stands

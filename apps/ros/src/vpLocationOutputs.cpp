@@ -32,6 +32,7 @@ vpLocationOutputs::vpLocationOutputs(ros::NodeHandle &nh, const ros::NodeHandle 
       m_location(nh.advertise<geometry_msgs::PoseWithCovarianceStamped>("location", 10)),
       m_whole(nh.advertise<visp_vlp::VlpLocation>("vlp_location", 10)),
       m_lamps(nh.advertise<visualization_msgs::MarkerArray>("lamps", 1, true)),
+      m_pathTopic(nh.advertise<nav_msgs::Path>("path", 1, true)),
       m_diagnostics(nh.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1))
 {
 }
@@ -66,14 +67,26 @@ void vpLocationOutputs::publish(const vpVlpLocation &location)
   whole.lamps = fix.lamps;
   whole.pose = pose.pose;
   m_whole.publish(whole);
+  if (!fix.valid) {
+    ROS_WARN_THROTTLE(1, "no pose: %s", fix.refusal.c_str());
+  }
   if (fix.valid && !fix.ambiguous) { // a reader of location has no field that would warn it
     m_location.publish(pose);
+    static const size_t longest = 1000; // poses
+    m_path.header = pose.header;
+    if (m_path.poses.size() >= longest) {
+      m_path.poses.erase(m_path.poses.begin());
+    }
+    m_path.poses.emplace_back();
+    m_path.poses.back().header = pose.header;
+    m_path.poses.back().pose = pose.pose.pose;
     publishTransform(location);
   }
   const double second = std::floor(location.timestamp);
   if (second != m_second) {
     m_second = second;
     publishLamps(location);
+    m_pathTopic.publish(m_path);
     publishDiagnostics(location);
   }
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include <nav_msgs/Odometry.h>
+#include <nav_msgs/Path.h>
 #include <ros/ros.h>
 #include <tf2_ros/transform_broadcaster.h>
 #include <visp3/vlp_core/vpLampMap.h>
@@ -23,6 +24,7 @@
   | `location` | geometry_msgs/PoseWithCovarianceStamped | the base in the map, at the frame's stamp |
   | `vlp_location` | visp_vlp/VlpLocation | the same of each frame, with the reason where there is no pose |
   | `lamps` | visualization_msgs/MarkerArray | the map's lamps, those in use bright; once a second |
+  | `path` | nav_msgs/Path | the latest 1000 of `location`; once a second |
   | `/tf` | | map to base; with the private parameter `odom_frame`, map to that frame |
   | `/diagnostics` | diagnostic_msgs/DiagnosticArray | state, lamps, standard deviation; once a second |
 
@@ -45,10 +47,11 @@ private:
 
   vpLampMap m_map;
   std::string m_mapFrame, m_baseFrame, m_odomFrame;
-  ros::Publisher m_location, m_whole, m_lamps, m_diagnostics;
+  ros::Publisher m_location, m_whole, m_lamps, m_pathTopic, m_diagnostics;
   tf2_ros::TransformBroadcaster m_transforms;
   std::deque<nav_msgs::Odometry> m_odometry; // of the last second
-  double m_second = -1;                      // in which lamps and diagnostics were published last
+  nav_msgs::Path m_path;
+  double m_second = -1; // in which lamps and diagnostics were published last
 };
 
 #endif
