@@ -19,6 +19,7 @@
 #include <ros/ros.h>
 #include <rosgraph_msgs/Log.h>
 #include <sensor_msgs/Image.h>
+#include <visp3/vlp_core/vpLampMap.h>
 #include <visp_vlp/GetImage.h>
 #include <visp_vlp/LampObservations.h>
 #include <visp_vlp/LedInfo.h>
@@ -275,10 +276,14 @@ TEST(RosNodes, BadMessagesAreOneClearLine)
              "image.data: 10 bytes in steps of 800, expected a picture of 800 x 600");
   image.width = image.step = 320;
   image.data.resize(320 * 600);
-  expectLine([&] { images.publish(image); }, "320");
+  expectLine(
+      [&] {
+        image.header.stamp = ros::Time::now();
+        images.publish(image);
+      },
+      "320");
   image.width = image.step = 800;
   image.data.resize(800 * 600);
-  image.header.stamp = ros::Time(100);
   expectLine([&] { images.publish(image); }, "the clock stands still, the frame is dropped");
   visp_vlp::LampObservations lampsSeen;
   lampsSeen.width = 640;
@@ -293,11 +298,39 @@ TEST(RosNodes, BadMessagesAreOneClearLine)
   EXPECT_FALSE(locator.ended());
 }
 
+// A survey moves a lamp of the file that all robots share: poses follow.
+TEST(RosNodes, AMapThatChangesReachesARobot)
+{
+  const vpTemporaryFolder folder;
+  const std::string file = folder / "lamps.yaml";
+  vpLampMap map = vpLampMap::load(lamps);
+  map.save(file);
+  vpProcess shared("lamp_map", {"_lamps:=" + file});
+  Robot robot("mapped");
+  for (const std::string node : {"ID_recognition", "vlc_locator"}) {
+    robot.kill(node);
+    robot.start(node, {"_rig:=" + rig});
+  }
+  Listener heard("mapped");
+  ASSERT_TRUE(spinUntil([&] { return heard.location.size() > 10; }, 20));
+  EXPECT_NEAR(heard.location.back().x, -0.35, 0.001);
+  for (vpLamp &lamp : map.lamps) {
+    lamp.position.x() += 1;
+  }
+  map.save(file);
+  EXPECT_TRUE(spinUntil([&] { return std::abs(heard.location.back().x - 0.65) < 0.001; }, 5))
+      << heard.location.back().x;
+  std::ofstream(file) << "lamps: none\n"; // a mistake changes nothing
+  spinUntil([] { return false; }, 1.5);
+  EXPECT_NEAR(heard.location.back().x, 0.65, 0.001);
+  EXPECT_NEAR(heard.location.back().heard, now(), 0.5);
+}
+
 TEST(RosNodes, AMissingParameterIsNamed)
 {
-  vpProcess locator("vlc_locator", {"__ns:=/missing", "_rig:=" + rig});
+  vpProcess locator("vlc_locator", {"__ns:=/missing", "_lamps:=" + lamps});
   EXPECT_EQ(locator.wait(), 2);
-  EXPECT_NE(locator.err().find("/missing/vlc_locator/lamps: missing, expected the name of a lamps.yaml"),
+  EXPECT_NE(locator.err().find("/missing/vlc_locator/rig: missing, expected the name of a rig.yaml"),
             std::string::npos)
       << locator.err();
 }

@@ -153,7 +153,7 @@ private:
   vpVlpRig m_rig;
   vpLampTracker m_tracker;
   Names m_names;
-  double m_last = 0; // s, of the last frame
+  double m_last = -1; // s, of the last frame
   ros::Publisher m_lamps;
   vpPictureSubscriber m_pictures; // last: it uses all of the above
 };

@@ -5,11 +5,13 @@
 // The paper's node ID_recognition: which lamp a region of a picture shows.
 
 #include <algorithm>
+#include <optional>
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_identification/vpLedDetector.h>
 #include <visp_vlp/GetImage.h>
 
+#include "vpLampMapSource.h"
 #include "vpRosMessages.h"
 #include "vpRosNode.h"
 
@@ -19,7 +21,8 @@ class Recognition
 {
 public:
   Recognition()
-      : m_rig(vpRigParameter(m_own)), m_detector(m_rig, vpLampsParameter(m_own)),
+      : m_rig(vpRigParameter(m_own)),
+        m_map(m_nh, m_own, [this](const vpLampMap &map) { m_detector.emplace(m_rig, map); }),
         m_service(m_nh.advertiseService("get_image", &Recognition::recognise, this))
   {
   }
@@ -30,6 +33,9 @@ private:
   {
     bool good = false;
     vpHandle([&] {
+      if (!m_detector) {
+        throw vpException(vpException::notInitialized, "get_image: no lamp map yet");
+      }
       const vpVlpFrame part = vpRosMessages::frame(region.image);
       const unsigned int width = part.I.getWidth(), height = part.I.getHeight();
       if (region.width != m_rig.width || region.height != m_rig.height ||
@@ -49,7 +55,7 @@ private:
         std::copy(part.I[v], part.I[v] + width, I[v + region.y_offset] + region.x_offset);
       }
       const vpRect window(region.x_offset, region.y_offset, width, height);
-      m_detector.detect(I, {window});
+      m_detector->detect(I, {window});
       answerWith(middlemost(window), answer);
       good = true;
     });
@@ -59,7 +65,7 @@ private:
   //! Of the lamps that were found the one nearest to the window's middle, nullptr where there is none.
   const vpLampObservation *middlemost(const vpRect &window) const
   {
-    const std::vector<vpLampObservation> &all = m_detector.observations();
+    const std::vector<vpLampObservation> &all = m_detector->observations();
     const vpImagePoint centre = window.getCenter();
     const Eigen::Vector2d middle(centre.get_u(), centre.get_v());
     const auto nearest =
@@ -82,7 +88,8 @@ private:
 
   ros::NodeHandle m_nh, m_own{"~"};
   vpVlpRig m_rig;
-  vpLedDetector m_detector;
+  std::optional<vpLedDetector> m_detector; // once there is a map
+  vpLampMapSource m_map;
   ros::ServiceServer m_service; // last: it uses all of the above
 };
 } // namespace

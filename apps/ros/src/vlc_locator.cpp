@@ -4,10 +4,13 @@
  */
 // The paper's node vlc_locator: from lamps and odometry to the robot's pose.
 
+#include <optional>
+
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 #include <visp_vlp/LedInfo.h>
 
+#include "vpLampMapSource.h"
 #include "vpLocationOutputs.h"
 #include "vpRosMessages.h"
 #include "vpRosNode.h"
@@ -18,8 +21,8 @@ class Locator
 {
 public:
   Locator()
-      : m_rig(vpRigParameter(m_own)), m_map(vpLampsParameter(m_own)), m_localizer(m_rig, m_map),
-        m_outputs(m_nh, m_own, m_map),
+      : m_rig(vpRigParameter(m_own)), m_outputs(m_nh, m_own),
+        m_mapSource(m_nh, m_own, [this](const vpLampMap &map) { use(map); }),
         m_odometry(m_nh.subscribe("odom", 100, &Locator::move, this, ros::TransportHints().tcpNoDelay())),
         m_lamps(m_nh.subscribe("lamp_observations", 10, &Locator::locate, this,
                                ros::TransportHints().tcpNoDelay())),
@@ -28,10 +31,19 @@ public:
   }
 
 private:
+  void use(const vpLampMap &map)
+  {
+    m_map = map;
+    m_localizer.emplace(m_rig, map);
+    m_outputs.setMap(map);
+  }
+
   void move(const nav_msgs::OdometryConstPtr &odom)
   {
     vpHandle([&] {
-      m_localizer.filter.addOdometry(vpRosMessages::odometry(*odom));
+      if (m_localizer) {
+        m_localizer->filter.addOdometry(vpRosMessages::odometry(*odom));
+      }
       m_outputs.addOdometry(*odom);
     });
   }
@@ -40,7 +52,8 @@ private:
   {
     vpHandle([&] {
       check(*lamps);
-      m_outputs.publish(m_localizer.locate(lamps->header.stamp.toSec(), vpRosMessages::observations(*lamps)));
+      m_outputs.publish(
+          m_localizer->locate(lamps->header.stamp.toSec(), vpRosMessages::observations(*lamps)));
     });
   }
 
@@ -65,6 +78,9 @@ private:
 
   void check(const visp_vlp::LampObservations &lamps) const
   {
+    if (!m_localizer) {
+      throw vpException(vpException::notInitialized, "no lamp map yet");
+    }
     if (lamps.width != m_rig.width || lamps.height != m_rig.height) {
       throw vpException(vpException::dimensionError,
                         "lamp_observations: of pictures of " + std::to_string(lamps.width) + " x " +
@@ -76,8 +92,9 @@ private:
   ros::NodeHandle m_nh, m_own{"~"};
   vpVlpRig m_rig;
   vpLampMap m_map;
-  vpVlpLocalizer m_localizer;
+  std::optional<vpVlpLocalizer> m_localizer; // once there is a map
   vpLocationOutputs m_outputs;
+  vpLampMapSource m_mapSource;
   ros::Subscriber m_odometry, m_lamps; // last: they use all of the above
   ros::ServiceServer m_service;
 };

@@ -4,8 +4,12 @@
  */
 // All in one process: from pictures and odometry to the robot's pose.
 
+#include <optional>
+
+#include <visp3/core/vpException.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
+#include "vpLampMapSource.h"
 #include "vpLocationOutputs.h"
 #include "vpPictures.h"
 #include "vpRosMessages.h"
@@ -17,10 +21,17 @@ class Vlp
 {
 public:
   explicit Vlp(const ros::NodeHandle &own)
-      : m_map(vpLampsParameter(own)), m_localizer(vpRigParameter(own), m_map), m_outputs(m_nh, own, m_map),
+      : m_rig(vpRigParameter(own)), m_outputs(m_nh, own), m_mapSource(m_nh, own,
+                                                                      [this](const vpLampMap &map) {
+                                                                        m_localizer.emplace(m_rig, map);
+                                                                        m_outputs.setMap(map);
+                                                                      }),
         m_odometry(m_nh.subscribe("odom", 100, &Vlp::move, this, ros::TransportHints().tcpNoDelay())),
         m_pictures(m_nh, own, [this](const vpVlpFrame &frame, const std_msgs::Header &) {
-          m_outputs.publish(m_localizer.process(frame));
+          if (!m_localizer) {
+            throw vpException(vpException::notInitialized, "no lamp map yet");
+          }
+          m_outputs.publish(m_localizer->process(frame));
         })
   {
   }
@@ -29,15 +40,18 @@ private:
   void move(const nav_msgs::OdometryConstPtr &odom)
   {
     vpHandle([&] {
-      m_localizer.filter.addOdometry(vpRosMessages::odometry(*odom));
+      if (m_localizer) {
+        m_localizer->filter.addOdometry(vpRosMessages::odometry(*odom));
+      }
       m_outputs.addOdometry(*odom);
     });
   }
 
   ros::NodeHandle m_nh;
-  vpLampMap m_map;
-  vpVlpLocalizer m_localizer;
+  vpVlpRig m_rig;
+  std::optional<vpVlpLocalizer> m_localizer; // once there is a map
   vpLocationOutputs m_outputs;
+  vpLampMapSource m_mapSource;
   ros::Subscriber m_odometry;
   vpPictureSubscriber m_pictures; // last: it uses all of the above
 };

@@ -25,8 +25,8 @@ const char *nameOf(vpVlpFilter::State state)
 }
 } // namespace
 
-vpLocationOutputs::vpLocationOutputs(ros::NodeHandle &nh, const ros::NodeHandle &own, const vpLampMap &map)
-    : m_map(map), m_mapFrame(own.param<std::string>("map_frame", "map")),
+vpLocationOutputs::vpLocationOutputs(ros::NodeHandle &nh, const ros::NodeHandle &own)
+    : m_mapFrame(own.param<std::string>("map_frame", "map")),
       m_baseFrame(own.param<std::string>("base_frame", "base_link")),
       m_odomFrame(own.param<std::string>("odom_frame", "")),
       m_location(nh.advertise<geometry_msgs::PoseWithCovarianceStamped>("location", 10)),

@@ -33,7 +33,9 @@
 class vpLocationOutputs
 {
 public:
-  vpLocationOutputs(ros::NodeHandle &nh, const ros::NodeHandle &own, const vpLampMap &map);
+  vpLocationOutputs(ros::NodeHandle &nh, const ros::NodeHandle &own);
+
+  void setMap(const vpLampMap &map) { m_map = map; }
 
   //! For map to odom: where the odometry has the base. It may come before or after the frames.
   void addOdometry(const nav_msgs::Odometry &odom);

@@ -44,8 +44,3 @@ vpVlpRig vpRigParameter(const ros::NodeHandle &own)
 {
   return vpVlpRig::load(vpRequiredParameter(own, "rig", "the name of a rig.yaml"));
 }
-
-vpLampMap vpLampsParameter(const ros::NodeHandle &own)
-{
-  return vpLampMap::load(vpRequiredParameter(own, "lamps", "the name of a lamps.yaml"));
-}

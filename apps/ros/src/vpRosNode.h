@@ -9,7 +9,6 @@
 #include <string>
 
 #include <ros/ros.h>
-#include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_core/vpVlpRig.h>
 
 /*!
@@ -28,7 +27,5 @@ std::string vpRequiredParameter(const ros::NodeHandle &own, const std::string &n
 
 //! The file of the private parameter `rig`. \throw vpException as vpVlpRig::load().
 vpVlpRig vpRigParameter(const ros::NodeHandle &own);
-//! The file of the private parameter `lamps`. \throw vpException as vpLampMap::load().
-vpLampMap vpLampsParameter(const ros::NodeHandle &own);
 
 #endif
