@@ -2,12 +2,12 @@
 """Robots on one master, and a robot and a computer with a radio link between them.
 
   /usr/bin/python3 tests/ros/measure.py BUILD robots [N]   N simulated robots (5), everything on this machine
+  /usr/bin/python3 tests/ros/measure.py BUILD sizes        a robot with pictures of two sizes, raw and compressed
   /usr/bin/python3 tests/ros/measure.py BUILD splits       each split over the link, as root
 
 BUILD is the build of apps/ros (build/release/ros). The link of `splits` is two network namespaces joined by a
 relay: 20 ms of delay each way, 20 Mbit/s, 1 % of the packets lost. Prints rows of Markdown.
 """
-import bisect
 import fcntl
 import heapq
 import os
@@ -23,7 +23,7 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(HERE, "..", "..", "data")
-RIG = DATA + "/rigs/ub300-800x600.yaml"
+SIZE = "800x600"
 LAMPS = DATA + "/lamps/paper.yaml"
 SECONDS = 20
 
@@ -104,10 +104,14 @@ class Nodes:
         self.all.append((name, process))
         return process
 
-    def robot(self, robot, where, master="127.0.0.1", transport="raw", x=-0.35, y=0.0):
+    def robot(self, robot, where, master="127.0.0.1", transport="raw", x=-0.35, y=0.0, size=SIZE):
         """where: the network namespace of each node, None for this machine's."""
-        own = [f"__ns:=/{robot}", f"_rig:={RIG}", f"_lamps:={LAMPS}", f"_image_transport:={transport}"]
-        simulator = [f"__ns:=/{robot}", f"_scenario:={DATA}/scenarios/servo.yaml", f"_start_x:={x}", f"_start_y:={y}"]
+        own = [f"__ns:=/{robot}", f"_rig:={DATA}/rigs/ub300-{size}.yaml", f"_lamps:={LAMPS}",
+               f"_image_transport:={transport}"]
+        scenario = os.path.join(self.logs.name, f"servo-{size}.yaml")
+        with open(f"{DATA}/scenarios/servo.yaml") as file, open(scenario, "w") as copy:
+            copy.write(file.read().replace("../", DATA + "/").replace(SIZE, size))
+        simulator = [f"__ns:=/{robot}", f"_scenario:={scenario}", f"_start_x:={x}", f"_start_y:={y}"]
         for node, arguments in (("simulator", simulator), ("CamKF", own), ("ID_recognition", own),
                                 ("vlc_locator", own + [f"_base_frame:={robot}/base_link"])):
             self.start(node, arguments, where[node], master)
@@ -210,6 +214,21 @@ def robots(build, count):
         nodes.close()
 
 
+def sizes(build):
+    print(HEADER)
+    for size in (SIZE, "2048x1536"):
+        for transport in ("raw", "compressed"):
+            nodes = Nodes(build)
+            try:
+                nodes.start("roscore", ["-p", "11397"], program="/usr/bin/roscore")
+                time.sleep(4)
+                nodes.robot("robot", dict.fromkeys(("simulator", "CamKF", "ID_recognition", "vlc_locator")),
+                            transport=transport, size=size)
+                print(row(f"{size}, {transport}", listen(nodes, ["robot"])["robot"]), flush=True)
+            finally:
+                nodes.close()
+
+
 def splits(build):
     robot, pc = "vlp-robot", "vlp-pc"
     cases = (
@@ -240,9 +259,11 @@ def splits(build):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3 or sys.argv[2] not in ("robots", "splits"):
+    if len(sys.argv) < 3 or sys.argv[2] not in ("robots", "sizes", "splits"):
         sys.exit(__doc__)
     if sys.argv[2] == "robots":
         robots(sys.argv[1], int(sys.argv[3]) if len(sys.argv) > 3 else 5)
+    elif sys.argv[2] == "sizes":
+        sizes(sys.argv[1])
     else:
         splits(sys.argv[1])

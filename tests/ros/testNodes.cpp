@@ -305,7 +305,7 @@ TEST(RosNodes, AMapThatChangesReachesARobot)
   const std::string file = folder / "lamps.yaml";
   vpLampMap map = vpLampMap::load(lamps);
   map.save(file);
-  vpProcess shared("lamp_map", {"_lamps:=" + file});
+  vpProcess shared("lamp_map", {"_lamps:=" + file, "_floor_plan:=" + (folder / "floor")});
   Robot robot("mapped");
   for (const std::string node : {"ID_recognition", "vlc_locator"}) {
     robot.kill(node);
@@ -314,6 +314,10 @@ TEST(RosNodes, AMapThatChangesReachesARobot)
   Listener heard("mapped");
   ASSERT_TRUE(spinUntil([&] { return heard.location.size() > 10; }, 20));
   EXPECT_NEAR(heard.location.back().x, -0.35, 0.001);
+  const std::string plan = folder.read("floor.pgm"), yaml = folder.read("floor.yaml");
+  EXPECT_EQ(plan.rfind("P5", 0), 0u); // as map_server wants it, lamps -0.465 to 0.48 m and a metre around
+  EXPECT_NE(yaml.find("image: floor.pgm\nresolution: 0.01\norigin: [-1.465, -1.425, 0]"), std::string::npos)
+      << yaml;
   for (vpLamp &lamp : map.lamps) {
     lamp.position.x() += 1;
   }

@@ -2,14 +2,15 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// One lamp map for all robots of a master: /lamp_map, latched, and again each time that its file changes.
+// One lamp map for all robots of a master: /lamp_map and /floor_plan, latched, and again each time that its
+// file changes.
 
 #include <filesystem>
 
 #include <std_msgs/String.h>
-#include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_core/vpReadFile.h>
 
+#include "vpFloorPlan.h"
 #include "vpRosNode.h"
 
 namespace
@@ -18,7 +19,10 @@ void run()
 {
   ros::NodeHandle nh, own("~");
   const std::string file = vpRequiredParameter(own, "lamps", "the name of a lamps.yaml");
-  ros::Publisher topic = nh.advertise<std_msgs::String>("/lamp_map", 1, true);
+  const std::string frameId = own.param<std::string>("map_frame", "map"),
+                    prefix = own.param<std::string>("floor_plan", "");
+  ros::Publisher topic = nh.advertise<std_msgs::String>("/lamp_map", 1, true),
+                 floor = nh.advertise<nav_msgs::OccupancyGrid>("/floor_plan", 1, true);
   std::filesystem::file_time_type written;
   for (ros::Rate rate(2); ros::ok(); rate.sleep()) {
     std::error_code gone; // between two versions
@@ -26,10 +30,14 @@ void run()
     if (!gone && now != written) {
       written = now;
       vpHandle([&] {
-        vpLampMap::load(file); // a file with a mistake goes to nobody
+        const vpFloorPlan plan(vpLampMap::load(file)); // a file with a mistake goes to nobody
         std_msgs::String text;
         text.data = vpReadFile(file);
         topic.publish(text);
+        floor.publish(plan.grid(frameId));
+        if (!prefix.empty()) {
+          plan.save(prefix);
+        }
       });
     }
     ros::spinOnce();
