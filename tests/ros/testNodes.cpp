@@ -16,10 +16,14 @@
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <geometry_msgs/Twist.h>
 #include <gtest/gtest.h>
+#include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
+#include <rosbag/bag.h>
 #include <rosgraph_msgs/Log.h>
 #include <sensor_msgs/Image.h>
 #include <visp3/vlp_core/vpLampMap.h>
+#include <visp3/vlp_robot/vpOdometry.h>
+#include <visp3/vlp_sensor/vpPictureSequence.h>
 #include <visp_vlp/GetImage.h>
 #include <visp_vlp/LampObservations.h>
 #include <visp_vlp/LedInfo.h>
@@ -328,6 +332,54 @@ TEST(RosNodes, AMapThatChangesReachesARobot)
   spinUntil([] { return false; }, 1.5);
   EXPECT_NEAR(heard.location.back().x, 0.65, 0.001);
   EXPECT_NEAR(heard.location.back().heard, now(), 0.5);
+}
+
+TEST(RosNodes, ARecordingBecomesARun)
+{
+  const vpTemporaryFolder folder;
+  Robot robot("recorded");
+  ros::NodeHandle nh;
+  std::vector<sensor_msgs::Image> images;
+  std::vector<nav_msgs::Odometry> samples;
+  const ros::Subscriber pictures = nh.subscribe<sensor_msgs::Image>(
+                            "/recorded/camera/image", 100,
+                            [&](const sensor_msgs::ImageConstPtr &image) { images.push_back(*image); }),
+                        odom = nh.subscribe<nav_msgs::Odometry>(
+                            "/recorded/odom", 100,
+                            [&](const nav_msgs::OdometryConstPtr &sample) { samples.push_back(*sample); });
+  ASSERT_TRUE(spinUntil([&] { return images.size() >= 5 && samples.size() >= 5; }, 20));
+  const std::string file = folder / "drive.bag";
+  rosbag::Bag bag(file, rosbag::bagmode::Write);
+  for (const sensor_msgs::Image &image : images) {
+    bag.write("/recorded/camera/image", image.header.stamp, image);
+  }
+  for (const nav_msgs::Odometry &sample : samples) {
+    bag.write("/recorded/odom", sample.header.stamp, sample);
+  }
+  bag.close();
+  const std::vector<std::string> options = {
+      "--image", "/recorded/camera/image", "--odom", "/recorded/odom", "--rig", rig, "--out", folder / "run"};
+  const auto convert = [&options](const std::string &recording) {
+    std::vector<std::string> arguments = {recording};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    vpProcess program("bag_to_run", arguments);
+    const int code = program.wait();
+    return std::to_string(code) + " " + program.out() + program.err();
+  };
+  EXPECT_EQ(convert(file), "0 " + (folder / "run") + ": " + std::to_string(images.size()) + " frames, " +
+                               std::to_string(samples.size()) + " samples of odometry\n");
+  vpPictureSequence run = vpPictureSequence::fromRun(folder / "run");
+  vpVlpFrame frame;
+  ASSERT_TRUE(run.next(frame));
+  EXPECT_EQ(frame.timestamp, images[0].header.stamp.toSec());
+  EXPECT_TRUE(std::equal(images[0].data.begin(), images[0].data.end(), frame.I.bitmap));
+  EXPECT_EQ(vpReadOdometry(folder / "run/odometry.csv").size(), samples.size());
+
+  EXPECT_EQ(convert(file), "2 bag_to_run: error: " + (folder / "run") + ": is there already\n");
+  std::filesystem::remove_all(folder / "run");
+  const std::string half = folder.write("half.bag", folder.read("drive.bag").substr(0, 100000));
+  EXPECT_EQ(convert(half).rfind("2 bag_to_run: error: ", 0), 0u);
+  EXPECT_FALSE(std::filesystem::exists(folder / "run"));
 }
 
 TEST(RosNodes, AMissingParameterIsNamed)

@@ -21,8 +21,9 @@ bool hasPlugin(const image_transport::ImageTransport &transport)
   const std::vector<std::string> all = transport.getLoadableTransports();
   return std::count(all.begin(), all.end(), "image_transport/compressed") > 0;
 }
+} // namespace
 
-vpVlpFrame decoded(const sensor_msgs::CompressedImage &image)
+vpVlpFrame vpDecoded(const sensor_msgs::CompressedImage &image)
 {
   const cv::Mat grey = image.data.empty() ? cv::Mat() : cv::imdecode(image.data, cv::IMREAD_GRAYSCALE);
   if (grey.empty()) {
@@ -36,7 +37,6 @@ vpVlpFrame decoded(const sensor_msgs::CompressedImage &image)
   grey.copyTo(cv::Mat(grey.rows, grey.cols, CV_8UC1, frame.I.bitmap));
   return frame;
 }
-} // namespace
 
 vpPicturePublisher::vpPicturePublisher(ros::NodeHandle &nh, const ros::NodeHandle &own, const vpVlpRig &rig)
     : m_transport(nh), m_pictures(m_transport.advertiseCamera("camera/image", 1)),
@@ -93,7 +93,7 @@ vpPictureSubscriber::vpPictureSubscriber(ros::NodeHandle &nh, const ros::NodeHan
     m_compressed = nh.subscribe<sensor_msgs::CompressedImage>(
         "camera/image/compressed", 1,
         [this](const sensor_msgs::CompressedImageConstPtr &image) {
-          vpHandle([&] { m_use(decoded(*image), image->header); });
+          vpHandle([&] { m_use(vpDecoded(*image), image->header); });
         },
         ros::VoidConstPtr(), hints);
   }

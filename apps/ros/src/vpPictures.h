@@ -13,6 +13,9 @@
 #include <visp3/vlp_core/vpVlpFrame.h>
 #include <visp3/vlp_core/vpVlpRig.h>
 
+//! A picture in JPEG or PNG. \throw vpException (badValue) where it is neither.
+vpVlpFrame vpDecoded(const sensor_msgs::CompressedImage &image);
+
 /*!
   Pictures of a camera: `camera/image` with `camera/camera_info`, and `camera/image/compressed`, which
   Debian's image_transport has no plugin for, as that plugin names it. What nobody listens to is not made. The
