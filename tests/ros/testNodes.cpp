@@ -382,6 +382,34 @@ TEST(RosNodes, ARecordingBecomesARun)
   EXPECT_FALSE(std::filesystem::exists(folder / "run"));
 }
 
+// The folder of a run through mvcam: its frames get the times of now, and poses are those of its truth.
+TEST(RosNodes, ARunIsPlayed)
+{
+  ros::NodeHandle nh;
+  std::vector<geometry_msgs::PoseWithCovarianceStamped> poses;
+  const ros::Subscriber location = nh.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+      "/played/location", 100,
+      [&](const geometry_msgs::PoseWithCovarianceStampedConstPtr &pose) { poses.push_back(*pose); });
+  const vpTemporaryFolder folder; // nine places, one each half second instead of ten
+  const std::string room = folder / "room";
+  std::filesystem::copy(data + "/paper-room", room);
+  std::ofstream frames(room + "/frames.csv");
+  frames << "timestamp_s,file\n";
+  for (int k = 0; k < 9; ++k) {
+    frames << 0.5 * k << ",frame" << k << ".png\n";
+  }
+  frames.close();
+  vpProcess locator("vlp",
+                    {"__ns:=/played", "_rig:=" + room + "/rig.yaml", "_lamps:=" + room + "/lamps.yaml"});
+  ASSERT_TRUE(spinUntil([&] { return location.getNumPublishers() > 0; }, 10));
+  vpProcess camera("mvcam", {"__ns:=/played", "_rig:=" + room + "/rig.yaml", "_camera:=" + room});
+  EXPECT_TRUE(spinUntil([&] { return poses.size() >= 5; }, 20)) << camera.err();
+  for (const geometry_msgs::PoseWithCovarianceStamped &pose : poses) {
+    EXPECT_NEAR(pose.header.stamp.toSec(), now(), 20);
+    EXPECT_LT(std::hypot(pose.pose.pose.position.x, pose.pose.pose.position.y), 1);
+  }
+}
+
 TEST(RosNodes, AMissingParameterIsNamed)
 {
   vpProcess locator("vlc_locator", {"__ns:=/missing", "_lamps:=" + lamps});

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_sensor/vpCameraSource.h>
@@ -19,42 +20,90 @@
 
 namespace
 {
-//! What the private parameters say: a camera, or the folder of a run, whose frames get the time of now.
-std::unique_ptr<vpFrameSource> open(const ros::NodeHandle &own, const vpVlpRig &rig)
-{
-  const std::string uri =
-      vpRequiredParameter(own, "camera", "a camera as v4l2:///dev/video0, or a run's folder");
-  if (!vpCameraSource::isUri(uri)) {
-    return std::make_unique<vpPictureSequence>(vpPictureSequence::fromRun(uri));
-  }
-  const bool resized = rig.resize.method != vpPictureResize::Method::none;
-  vpCameraSettings settings;
-  settings.exposure = own.param("exposure", rig.shutter.exposure); // s
-  double value = 0;
-  if (own.getParam("gain", value)) {
-    settings.gain = value;
-  }
-  if (own.getParam("rate", value)) {
-    settings.frameRate = value; // Hz
-  }
-  settings.region = vpCameraRegion{0, 0, resized ? rig.resize.sourceWidth : rig.width,
-                                   resized ? rig.resize.sourceHeight : rig.height};
-  vpCameraPatience patience;
-  patience.clock = [] { return ros::Time::now().toSec(); };
-  patience.stop = [] { return !ros::ok(); };
-  std::unique_ptr<vpFrameSource> camera = std::make_unique<vpCameraSource>(uri, settings, patience);
-  if (resized) {
-    camera = std::make_unique<vpResizedSource>(std::move(camera), rig);
-  }
-  return camera;
-}
-
-//! Frames of a recording come at the rate at which they were taken, with the times of now.
-class Replay
+/*!
+  The camera of the private parameters. `exposure` (s) and `gain` may be set while it runs: they are read
+  again once a second. What the camera refuses is an error line, and it goes on as before.
+*/
+class LiveCamera : public vpFrameSource
 {
 public:
-  void wait(vpVlpFrame &frame)
+  LiveCamera(ros::NodeHandle &nh, const ros::NodeHandle &own, const std::string &uri, const vpVlpRig &rig)
+      : m_own(own), m_shutter(rig.shutter),
+        m_topic(nh.advertise<visp_vlp::RollingShutter>("camera/rolling_shutter", 1, true))
   {
+    const bool resized = rig.resize.method != vpPictureResize::Method::none;
+    vpCameraSettings settings = asked();
+    double rate = 0; // Hz
+    if (own.getParam("rate", rate)) {
+      settings.frameRate = rate;
+    }
+    settings.region = vpCameraRegion{0, 0, resized ? rig.resize.sourceWidth : rig.width,
+                                     resized ? rig.resize.sourceHeight : rig.height};
+    vpCameraPatience patience;
+    patience.clock = [] { return ros::Time::now().toSec(); };
+    patience.stop = [] { return !ros::ok(); };
+    auto camera = std::make_unique<vpCameraSource>(uri, settings, patience);
+    m_camera = camera.get();
+    m_frames = std::move(camera);
+    if (resized) {
+      m_frames = std::make_unique<vpResizedSource>(std::move(m_frames), rig);
+    }
+    tell(settings);
+  }
+
+  bool next(vpVlpFrame &frame) override
+  {
+    if (ros::Time::now() - m_read > ros::Duration(1)) {
+      m_read = ros::Time::now();
+      const vpCameraSettings settings = asked();
+      if (settings.exposure != m_told.exposure || settings.gain != m_told.gain) {
+        vpHandle([&] { m_camera->set(settings); });
+        tell(settings);
+      }
+    }
+    return m_frames->next(frame);
+  }
+
+private:
+  vpCameraSettings asked() const
+  {
+    vpCameraSettings settings;
+    settings.exposure = m_own.param("exposure", m_shutter.exposure);
+    double gain = 0;
+    if (m_own.getParam("gain", gain)) {
+      settings.gain = gain;
+    }
+    return settings;
+  }
+
+  void tell(const vpCameraSettings &settings)
+  {
+    m_told = settings;
+    vpRollingShutter shutter = m_shutter;
+    shutter.exposure = m_camera->settings().exposure.value_or(*settings.exposure);
+    m_topic.publish(vpRosMessages::rollingShutter(shutter));
+  }
+
+  ros::NodeHandle m_own;
+  vpRollingShutter m_shutter; // of the rig
+  ros::Publisher m_topic;
+  std::unique_ptr<vpFrameSource> m_frames;
+  vpCameraSource *m_camera = nullptr; // at the bottom of m_frames
+  vpCameraSettings m_told;
+  ros::Time m_read; // the parameters
+};
+
+//! Frames of a recording come at the rate at which they were taken, with the times of now.
+class Replay : public vpFrameSource
+{
+public:
+  explicit Replay(const std::string &run) : m_frames(vpPictureSequence::fromRun(run)) {}
+
+  bool next(vpVlpFrame &frame) override
+  {
+    if (!m_frames.next(frame)) {
+      return false;
+    }
     const double now = ros::Time::now().toSec();
     if (!m_shift) {
       m_shift = now - frame.timestamp;
@@ -63,9 +112,11 @@ public:
     if (frame.timestamp > now) {
       ros::Duration(frame.timestamp - now).sleep();
     }
+    return true;
   }
 
 private:
+  vpPictureSequence m_frames;
   std::optional<double> m_shift; // s
 };
 
@@ -73,11 +124,14 @@ void run()
 {
   ros::NodeHandle nh, own("~");
   const vpVlpRig rig = vpRigParameter(own);
-  const bool live = vpCameraSource::isUri(own.param<std::string>("camera", ""));
-  const std::unique_ptr<vpFrameSource> camera = open(own, rig);
-  Replay replay;
-  ros::Publisher shutter = nh.advertise<visp_vlp::RollingShutter>("camera/rolling_shutter", 1, true);
-  shutter.publish(vpRosMessages::rollingShutter(rig.shutter));
+  const std::string name =
+      vpRequiredParameter(own, "camera", "a camera as v4l2:///dev/video0, or a run's folder");
+  std::unique_ptr<vpFrameSource> camera;
+  if (vpCameraSource::isUri(name)) {
+    camera = std::make_unique<LiveCamera>(nh, own, name, rig);
+  } else {
+    camera = std::make_unique<Replay>(name);
+  }
   vpPicturePublisher pictures(nh, own, rig);
   vpVlpFrame frame;
   while (ros::ok()) {
@@ -88,9 +142,6 @@ void run()
     } catch (const vpException &error) { // about one frame
       ROS_WARN_THROTTLE(1, "%s", error.what());
       continue;
-    }
-    if (!live) {
-      replay.wait(frame);
     }
     pictures.publish(frame);
     ros::spinOnce();
