@@ -131,7 +131,7 @@ public:
     }
     arv_camera_set_pixel_format(m_camera.get(), ARV_PIXEL_FORMAT_MONO_8, doing("pixel format Mono8"));
     setRegion(asked);
-    set(asked);
+    AravisCamera::set(asked);
     startStream();
     m_lostHandler = g_signal_connect(
         arv_camera_get_device(m_camera.get()), "control-lost",

@@ -135,7 +135,7 @@ private:
   void start(const vpCameraSettings &asked)
   {
     check(m_sdk.Play(m_camera), "start");
-    set(asked);
+    MindVisionCamera::set(asked);
     m_sdk.SetMonochrome(m_camera, 1); // a grey camera refuses: it is already
     static const int fastest = 2;
     m_sdk.SetFrameSpeed(m_camera, fastest); // likewise one of a single speed
