@@ -13,6 +13,7 @@
 #include <visp3/vlp_core/vpNumberText.h>
 
 #include "vpCameraFit.h"
+#include "vpCameraOf.h"
 
 BEGIN_VISP_NAMESPACE
 

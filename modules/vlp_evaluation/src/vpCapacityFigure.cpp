@@ -56,7 +56,7 @@ vpFigure vpCapacityFigure(const std::vector<vpCapacityCurve> &curves, const std:
                     colour(curves[i].dashed ? grey : colours[i % colours.size()]) + title(curves[i].name));
   }
   if (plots.empty()) {
-    plots.push_back("1 notitle");
+    plots.emplace_back("1 notitle");
     last = first = 1;
   }
   figure.body += range("x", 0.95 * first, 1.02 * last) + "set yrange [1:*]\nset logscale y\n" +

@@ -146,7 +146,7 @@ vpDispersion vpDispersion::of(const std::vector<Vector2d> &points)
       throw vpException(vpException::badValue, "dispersion: a point that is not finite");
     }
   }
-  const Vector2d origin = points.front(); // near it the differences keep all their digits
+  const Vector2d &origin = points.front(); // near it the differences keep all their digits
   std::vector<Vector2d> shifted;
   for (const Vector2d &point : points) {
     shifted.emplace_back(point - origin);
