@@ -42,7 +42,7 @@ double deviation(const std::vector<double> &values)
 }
 
 //! Of the exposures that a rig may claim where nobody measured it, s.
-const std::vector<double> claims = {10e-6, 20e-6, 40e-6, 80e-6, 160e-6};
+const std::vector<double> claims = {10e-6, 20e-6, 30e-6, 45e-6, 60e-6, 80e-6, 100e-6, 130e-6, 160e-6};
 
 //! Right ids in all pictures of a set whatever exposure is claimed; no region has another's. \param within
 //! px, that a lamp's centre is noted to. \param nothingElse No other region is found.

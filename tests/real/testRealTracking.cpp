@@ -198,7 +198,7 @@ TEST(Ub300CodedVideo, AsIfTheCameraMoved)
     const double t = static_cast<double>(k);
     return Eigen::Vector2d(200 + 75 * std::sin(0.35 * t), 20 + 20 * std::sin(0.5 * t)).cast<int>().eval();
   };
-  expectSteady(set, {toAndFro(30), 12, {}, corner});
-  expectSteady(set, {toAndFro(30), 12, stripsOnly, corner}, 4);
+  expectSteady(set, {toAndFro(60), 12, {}, corner});
+  expectSteady(set, {toAndFro(60), 12, stripsOnly, corner}, 4);
 }
 } // namespace
