@@ -82,9 +82,7 @@ private:
       geometry_msgs::TransformStamped transform;
       transform.header = odom.header;
       transform.child_frame_id = m_baseFrame;
-      transform.transform.translation.x = odom.pose.pose.position.x;
-      transform.transform.translation.y = odom.pose.pose.position.y;
-      transform.transform.rotation = odom.pose.pose.orientation;
+      transform.transform = vpRosMessages::transform(m_odomMb);
       m_transforms.sendTransform(transform);
       geometry_msgs::PoseStamped truth;
       truth.header.stamp = odom.header.stamp;

@@ -121,15 +121,11 @@ void vpLocationOutputs::publishTransform(const vpVlpLocation &location)
     M = M * odomMb->inverse();
     child = m_odomFrame;
   }
-  const geometry_msgs::Pose pose = vpRosMessages::pose(M);
   geometry_msgs::TransformStamped transform;
   transform.header.stamp = ros::Time().fromSec(location.timestamp);
   transform.header.frame_id = m_mapFrame;
   transform.child_frame_id = child;
-  transform.transform.translation.x = pose.position.x;
-  transform.transform.translation.y = pose.position.y;
-  transform.transform.translation.z = pose.position.z;
-  transform.transform.rotation = pose.orientation;
+  transform.transform = vpRosMessages::transform(M);
   m_transforms.sendTransform(transform);
 }
 

@@ -213,6 +213,17 @@ geometry_msgs::Pose pose(const vpHomogeneousMatrix &M)
   return pose;
 }
 
+geometry_msgs::Transform transform(const vpHomogeneousMatrix &M)
+{
+  const geometry_msgs::Pose same = pose(M);
+  geometry_msgs::Transform transform;
+  transform.translation.x = same.position.x;
+  transform.translation.y = same.position.y;
+  transform.translation.z = same.position.z;
+  transform.rotation = same.orientation;
+  return transform;
+}
+
 vpHomogeneousMatrix matrix(const geometry_msgs::Pose &pose)
 {
   const geometry_msgs::Quaternion &o = pose.orientation;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <geometry_msgs/Transform.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
@@ -42,6 +43,7 @@ visp_vlp::LampObservation lamp(const vpLampObservation &seen);
 vpLampObservation observation(const visp_vlp::LampObservation &lamp);
 std::vector<vpLampObservation> observations(const visp_vlp::LampObservations &lamps);
 
+geometry_msgs::Transform transform(const vpHomogeneousMatrix &M);
 geometry_msgs::Pose pose(const vpHomogeneousMatrix &M);
 //! \throw vpException (badValue) where it is not finite, or its quaternion has no length.
 vpHomogeneousMatrix matrix(const geometry_msgs::Pose &pose);

@@ -4,11 +4,11 @@
  */
 #include "vpRosRobot.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpMath.h>
+#include <visp3/vlp_core/vpNumberText.h>
 
 #include "vpRosMessages.h"
 #include "vpRosNode.h"
@@ -33,7 +33,7 @@ vpOdometry vpRosBase::odometry()
 {
   const std::lock_guard<std::mutex> lock(m_mutex);
   if (ros::Time::now().toSec() - m_newest.timestamp > deadline) {
-    throw vpException(vpException::ioError, "odom: no sample for half a second");
+    throw vpException(vpException::ioError, "odom: no sample for " + vpNumberText(deadline) + " s");
   }
   return m_newest;
 }
@@ -111,27 +111,18 @@ vpVlpFix vpRosPose::at(double time) const
     fix.refusal = "no pose yet";
     return fix;
   }
-  // Each sample is the mean over the interval that it ends; the last one goes on.
-  double at = m_last.timestamp, way = 0, turn = 0;
-  const auto drive = [&](const vpOdometry &sample, double until) {
-    fix.wMb = vpDrivenOn(fix.wMb, {sample.v, sample.w}, until - at);
-    way += std::abs(sample.v) * (until - at);
-    turn += std::abs(sample.w) * (until - at);
-    at = until;
-  };
+  vpOdometryPose carried(fix.wMb, m_last.timestamp);
+  double at = m_last.timestamp, way = 0, turn = 0; // s, m, rad
   for (const vpOdometry &sample : m_odometry) {
     if (sample.timestamp > at) {
-      drive(sample, std::min(sample.timestamp, time));
-    }
-    if (at >= time) {
-      break;
+      carried.addOdometry(sample);
+      way += std::abs(sample.v) * (sample.timestamp - at);
+      turn += std::abs(sample.w) * (sample.timestamp - at);
+      at = sample.timestamp;
     }
   }
-  if (at < time && !m_odometry.empty()) {
-    drive(m_odometry.back(), time);
-  }
-  static const double wheels = 0.05; // share of way and turn, standard deviation of uncalibrated odometry
-  fix.covariance.diagonal().head<2>().array() += vpMath::sqr(wheels * way);
-  fix.covariance(5, 5) += vpMath::sqr(wheels * turn);
+  fix.wMb = carried.at(time).wMb;
+  fix.covariance.diagonal().head<2>().array() += vpMath::sqr(odometryShare * way);
+  fix.covariance(5, 5) += vpMath::sqr(odometryShare * turn);
   return fix;
 }

@@ -44,6 +44,9 @@ private:
 class vpRosPose : public vpPoseSource
 {
 public:
+  double odometryShare =
+      0.05; // of the way and turn since the pose, standard deviation of uncalibrated odometry
+
   explicit vpRosPose(ros::NodeHandle &nh);
 
   void addOdometry(const vpOdometry &sample) override;
