@@ -50,6 +50,11 @@ auto wholeNumber(std::uint64_t least, std::uint64_t most, const std::string &exp
 }
 } // namespace
 
+void vpBadInput(const std::string &problem)
+{
+  throw vpException(vpException::badValue, problem);
+}
+
 void vpAddName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
                const std::string &help)
 {

@@ -20,6 +20,9 @@ class Option;
 
 BEGIN_VISP_NAMESPACE
 
+//! \throw vpException (badValue): what the user gave is no good, for \e problem.
+[[noreturn]] void vpBadInput(const std::string &problem);
+
 //! An option that takes a text which is not empty, as the name of a file.
 void vpAddName(CLI::App &app, const std::string &option, std::string &name, const std::string &type,
                const std::string &help);

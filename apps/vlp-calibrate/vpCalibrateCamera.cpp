@@ -29,10 +29,10 @@ namespace
 {
 using Model = vpCameraCalibration::Model;
 
-const char *const description =
+const char *const cameraDescription =
     "Focal length, principal point and distortion from pictures of a flat board.\n";
 
-const char *const footer = R"(
+const char *const cameraFooter = R"(
 Examples:
   vlp-calibrate camera --board chessboard --size 9x6 --spacing 25 --print board.pdf
   vlp-calibrate camera --board chessboard --size 9x6 --spacing 25 --images 'board/%02d.png' --out camera
@@ -49,12 +49,7 @@ The folder --out gets camera.xml (ViSP), camera_info.yaml (ROS), residuals.png, 
 Exit code: 0 done; 2 bad usage or bad input; 3 the pictures do not tell.
 )";
 
-[[noreturn]] void fail(const std::string &problem)
-{
-  throw vpException(vpException::badValue, problem);
-}
-
-struct Options {
+struct CameraOptions {
   vpFrameOptions frames;
   std::string kind = "chessboard", size = "9x6", spacing = "25", model = "visp", name = "camera", info, print,
               out;
@@ -63,8 +58,8 @@ struct Options {
 
   bool parse(int argc, char **argv)
   {
-    CLI::App app(description, "vlp-calibrate camera");
-    app.footer(footer);
+    CLI::App app(cameraDescription, "vlp-calibrate camera");
+    app.footer(cameraFooter);
     app.get_formatter()->column_width(28);
     vpAddChoice(app, "--board", kind, {"chessboard", "charuco", "circles"},
                 "kind of the board (default chessboard)");
@@ -90,21 +85,21 @@ struct Options {
     if (cross == std::string::npos || !vpParseNumber(size.substr(0, cross), columns) ||
         !vpParseNumber(size.substr(cross + 1), rows) || columns != std::floor(columns) ||
         rows != std::floor(rows) || !(std::min(columns, rows) >= 3 && std::max(columns, rows) <= most)) {
-      fail("--size: " + vpShown(size) + ", expected two whole numbers from 3 to 100, as 9x6");
+      vpBadInput("--size: " + vpShown(size) + ", expected two whole numbers from 3 to 100, as 9x6");
     }
     board.columns = static_cast<int>(columns);
     board.rows = static_cast<int>(rows);
     board.spacing = 0.001 * vpPositiveOption("--spacing", spacing);
     static const double largest = 1000; // mm
     if (board.spacing > 0.001 * largest) {
-      fail("--spacing: " + spacing + ", expected millimetres, at most " + vpNumberText(largest));
+      vpBadInput("--spacing: " + spacing + ", expected millimetres, at most " + vpNumberText(largest));
     }
     calibration.model = model == "perspective"      ? Model::perspective
                         : model == "kannala-brandt" ? Model::kannalaBrandt
                         : model == "opencv"         ? Model::opencv
                                                     : Model::visp;
     if (!info.empty() && out.empty()) {
-      fail("--camera-info: no --out, expected the folder for camera.xml");
+      vpBadInput("--camera-info: no --out, expected the folder for camera.xml");
     }
     if (print.empty() && info.empty()) {
       frames.check();
@@ -138,7 +133,7 @@ void tellCoverage(const Seen &seen)
                    static_cast<double>(covered.size()));
 }
 
-Seen look(const Options &options)
+Seen look(const CameraOptions &options)
 {
   Seen seen;
   for (const std::unique_ptr<vpFrameSource> &source : options.frames.open()) {
@@ -169,7 +164,7 @@ std::string shortName(const std::string &picture)
   return std::filesystem::path(picture).filename().string();
 }
 
-std::string textOf(const vpCameraEstimate &found, const Seen &seen)
+std::string cameraText(const vpCameraEstimate &found, const Seen &seen)
 {
   vpReportTable table;
   table.heading = "Camera";
@@ -196,7 +191,8 @@ std::string textOf(const vpCameraEstimate &found, const Seen &seen)
          vpFormat("\n%.3f px rms; points in %.0f %% of the picture\n", found.rms, 100 * found.coverage);
 }
 
-void write(const Options &options, const vpCameraEstimate &found, const Seen &seen, const std::string &text)
+void write(const CameraOptions &options, const vpCameraEstimate &found, const Seen &seen,
+           const std::string &text)
 {
   const vpCalibrationFolder folder(options.out);
   // What may be refused comes first.
@@ -228,7 +224,7 @@ void write(const Options &options, const vpCameraEstimate &found, const Seen &se
 
 vpExitCode vpCalibrateCamera(int argc, char **argv)
 {
-  Options options;
+  CameraOptions options;
   if (!options.parse(argc, argv)) {
     return vpExitCode::done;
   }
@@ -258,7 +254,7 @@ vpExitCode vpCalibrateCamera(int argc, char **argv)
                                   : found.refusal));
     return vpExitCode::nothingFound;
   }
-  const std::string text = textOf(found, seen);
+  const std::string text = cameraText(found, seen);
   std::cout << text;
   static const double littleCoverage = 0.6;
   if (found.coverage < littleCoverage) {

@@ -25,10 +25,10 @@ namespace
 {
 using State = vpSurveyedLamp::State;
 
-const char *const description =
+const char *const lampsDescription =
     "Where lamps hang, from a drive with odometry and two lamps, or one distance, measured by hand.\n";
 
-const char *const footer = R"(
+const char *const lampsFooter = R"(
 Examples:
   vlp-calibrate lamps --run drive --measured LED1,LED4 --out surveyed
   vlp-calibrate lamps --run drive --distance LED1,LED4,1.323 --rig calibrated/rig.yaml --out surveyed
@@ -42,11 +42,6 @@ held unless a --prior says how well it is known.
 Exit code: 0 done; 2 bad usage or bad input; 3 the pictures do not tell.
 )";
 
-[[noreturn]] void fail(const std::string &problem)
-{
-  throw vpException(vpException::badValue, problem);
-}
-
 size_t lampOf(const vpLampMap &map, const std::string &option, const std::string &id)
 {
   const vpLamp *lamp = map.find(id);
@@ -55,7 +50,7 @@ size_t lampOf(const vpLampMap &map, const std::string &option, const std::string
     for (const vpLamp &known : map.lamps) {
       ids += (ids.empty() ? "" : ", ") + known.id;
     }
-    fail(option + ": " + vpShown(id) + ", expected a lamp of the map: " + ids);
+    vpBadInput(option + ": " + vpShown(id) + ", expected a lamp of the map: " + ids);
   }
   return static_cast<size_t>(lamp - map.lamps.data());
 }
@@ -65,7 +60,7 @@ void setMeasured(vpLampSurvey &survey, const vpLampMap &map, const std::vector<s
   for (const std::string &id : ids) {
     const size_t lamp = lampOf(map, "--measured", id);
     if (std::find(survey.measured.begin(), survey.measured.end(), lamp) != survey.measured.end()) {
-      fail("--measured: " + id + " twice, expected each lamp once");
+      vpBadInput("--measured: " + id + " twice, expected each lamp once");
     }
     survey.measured.push_back(lamp);
   }
@@ -77,14 +72,14 @@ void setDistance(vpLampSurvey &survey, const vpLampMap &map, const std::vector<s
     return;
   }
   if (words.size() != 3) {
-    fail("--distance: " + std::to_string(words.size()) + " words, expected LAMP,LAMP,METRES");
+    vpBadInput("--distance: " + std::to_string(words.size()) + " words, expected LAMP,LAMP,METRES");
   }
   vpLampDistance distance;
   distance.from = lampOf(map, "--distance", words[0]);
   distance.to = lampOf(map, "--distance", words[1]);
   distance.metres = vpPositiveOption("--distance", words[2]);
   if (distance.from == distance.to) {
-    fail("--distance: from " + words[0] + " to itself, expected two lamps");
+    vpBadInput("--distance: from " + words[0] + " to itself, expected two lamps");
   }
   survey.distance = distance;
 }
@@ -113,8 +108,8 @@ vpExitCode vpCalibrateLamps(int argc, char **argv)
 {
   vpRunOptions options;
   std::vector<std::string> measured, distance;
-  CLI::App app(description, "vlp-calibrate lamps");
-  app.footer(footer);
+  CLI::App app(lampsDescription, "vlp-calibrate lamps");
+  app.footer(lampsFooter);
   app.get_formatter()->column_width(28);
   options.add(app);
   app.add_option("--measured", measured, "lamps whose position_m is exact, two or more")
@@ -135,9 +130,9 @@ vpExitCode vpCalibrateLamps(int argc, char **argv)
   setMeasured(survey, map, measured);
   setDistance(survey, map, distance);
   if ((survey.measured.size() < 2) == !survey.distance || (survey.distance && !survey.measured.empty())) {
-    fail("--measured: " + std::to_string(survey.measured.size()) +
-         (survey.distance ? " lamps beside --distance" : " lamps") +
-         ", expected two or more, or one --distance instead");
+    vpBadInput("--measured: " + std::to_string(survey.measured.size()) +
+               (survey.distance ? " lamps beside --distance" : " lamps") +
+               ", expected two or more, or one --distance instead");
   }
 
   const vpSurveyResult found = survey.solve(options.read(rig, map), rig, map);

@@ -19,10 +19,11 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const char *const description = "How the camera sits on the robot, its principal point and its focal length, "
-                                "from a drive under known lamps.\n";
+const char *const mountDescription =
+    "How the camera sits on the robot, its principal point and its focal length, "
+    "from a drive under known lamps.\n";
 
-const char *const footer = R"(
+const char *const mountFooter = R"(
 Examples:
   vlp-calibrate mount --run spin --run square --out calibrated
   vlp-calibrate mount --run drive --fix u0,v0,focal --out calibrated
@@ -44,8 +45,8 @@ Exit code: 0 done; 2 bad usage or bad input; 3 the pictures do not tell.
 vpExitCode vpCalibrateMount(int argc, char **argv)
 {
   vpRunOptions options;
-  CLI::App app(description, "vlp-calibrate mount");
-  app.footer(footer);
+  CLI::App app(mountDescription, "vlp-calibrate mount");
+  app.footer(mountFooter);
   app.get_formatter()->column_width(28);
   options.add(app);
   if (!vpParseCommandLine(app, argc, argv)) {

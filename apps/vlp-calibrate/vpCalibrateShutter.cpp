@@ -26,10 +26,10 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const char *const description =
+const char *const shutterDescription =
     "Row time and effective exposure of a rolling shutter from lamps of known frequency.\n";
 
-const char *const footer = R"(
+const char *const shutterFooter = R"(
 Examples:
   vlp-calibrate shutter --image lamp.png --frequency 1000
   vlp-calibrate shutter --run recorded --out calibrated
@@ -45,14 +45,14 @@ curve add.
 Exit code: 0 done; 2 bad usage or bad input; 3 the pictures do not show it.
 )";
 
-struct Options {
+struct ShutterOptions {
   vpFrameOptions frames;
   std::string rig, lamps, out, frequency, ppm;
 
   bool parse(int argc, char **argv)
   {
-    CLI::App app(description, "vlp-calibrate shutter");
-    app.footer(footer);
+    CLI::App app(shutterDescription, "vlp-calibrate shutter");
+    app.footer(shutterFooter);
     app.get_formatter()->column_width(28);
     frames.add(app);
     vpAddInput(app, "--rig", rig, "FILE",
@@ -104,7 +104,7 @@ struct Options {
   }
 };
 
-std::string textOf(const vpShutterEstimate &found)
+std::string shutterText(const vpShutterEstimate &found)
 {
   vpReportTable table;
   table.heading = "Shutter";
@@ -158,7 +158,7 @@ std::string sightsOf(const vpShutterEstimate &found)
 
 vpExitCode vpCalibrateShutter(int argc, char **argv)
 {
-  Options options;
+  ShutterOptions options;
   if (!options.parse(argc, argv)) {
     return vpExitCode::done;
   }
@@ -175,7 +175,7 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
     spdlog::error(vpOneLine(found.refusal));
     return vpExitCode::nothingFound;
   }
-  const std::string text = textOf(found);
+  const std::string text = shutterText(found);
   std::cout << text;
   if (!options.out.empty()) {
     rig.shutter.rowTime = found.rowTime;

@@ -21,18 +21,13 @@ namespace
 {
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const std::string &problem)
-{
-  throw vpException(vpException::badValue, problem);
-}
-
 //! Index of a rig parameter that an option names.
 int parameter(const std::string &option, const std::string &name)
 {
   try {
     return vpRigParameterInfo::index(name);
   } catch (const vpException &error) {
-    fail(option + ": " + error.getStringMessage());
+    vpBadInput(option + ": " + error.getStringMessage());
   }
 }
 } // namespace
@@ -41,7 +36,7 @@ double vpPositiveOption(const std::string &option, const std::string &text)
 {
   double value = 0;
   if (!vpParseNumber(text, value) || !std::isfinite(value) || !(value > 0)) {
-    fail(option + ": " + vpShown(text) + ", expected a number above 0");
+    vpBadInput(option + ": " + vpShown(text) + ", expected a number above 0");
   }
   return value;
 }
@@ -84,16 +79,17 @@ void vpRunOptions::finish()
   }
   for (const auto &[option, name] : {std::pair{"--rig", rig}, std::pair{"--lamps", lamps}}) {
     if (name.empty()) {
-      fail(std::string(option) + ": nothing, expected a file");
+      vpBadInput(std::string(option) + ": nothing, expected a file");
     }
   }
   vpCalibrationFolder::check(out, {rig, lamps});
   if ((motion == "places") == places.empty()) {
-    fail("--places: " + (places.empty() ? std::string("nothing") : places) +
-         ", expected a file with --motion places, and only then");
+    vpBadInput("--places: " + (places.empty() ? std::string("nothing") : places) +
+               ", expected a file with --motion places, and only then");
   }
   if (!odometry.empty() && frames.runs.size() > 1) {
-    fail("--odometry: " + odometry + " for several runs, expected an odometry.csv in each of their folders");
+    vpBadInput("--odometry: " + odometry +
+               " for several runs, expected an odometry.csv in each of their folders");
   }
 }
 
@@ -138,12 +134,12 @@ void vpRunOptions::apply(vpLampBundle &bundle) const
   for (const std::string &prior : priors) {
     const size_t equals = prior.find('=');
     if (equals == std::string::npos) {
-      fail("--prior: " + vpShown(prior) + ", expected NAME=SIGMA, as u0=1");
+      vpBadInput("--prior: " + vpShown(prior) + ", expected NAME=SIGMA, as u0=1");
     }
     const int i = parameter("--prior", prior.substr(0, equals));
     if (bundle.rigSigma(i) == 0) {
-      fail("--prior " + vpShown(prior.substr(0, equals)) +
-           ": beside --fix of the same, expected one of them");
+      vpBadInput("--prior " + vpShown(prior.substr(0, equals)) +
+                 ": beside --fix of the same, expected one of them");
     }
     const double sigma = vpPositiveOption("--prior " + prior.substr(0, equals), prior.substr(equals + 1));
     const bool angle = vpRigParameterInfo::all()[static_cast<size_t>(i)].unit == "deg";

@@ -46,17 +46,12 @@ scatter, track, pmf, cdf, error-over-time as .png and .svg, drawn by gnuplot.
 Exit code: 0 done; 2 bad usage or bad input; 3 nothing to evaluate: no poses, or none at a time of the truth.
 )";
 
-[[noreturn]] void fail(const std::string &problem)
-{
-  throw vpException(vpException::badValue, problem);
-}
-
 //! x1,y1,x2,y2 in metres.
 vpTrackLine lineOf(const std::string &text)
 {
   const std::vector<double> values = vpNumbersOf("--line", text, 4, "four numbers x1,y1,x2,y2 (m)");
   if (std::hypot(values[2] - values[0], values[3] - values[1]) < 1e-6) {
-    fail("--line: " + vpShown(text) + ", expected two different points");
+    vpBadInput("--line: " + vpShown(text) + ", expected two different points");
   }
   return vpTrackLine({values[0], values[1]}, {values[2], values[3]});
 }
@@ -85,16 +80,16 @@ bool vpEvaluateOptions::parse(int argc, char **argv)
   }
   if (!runs.empty()) {
     if (!truth.empty() || !poses().empty() || !line.empty() || !gap.empty() || alignment != "none") {
-      fail("--runs: beside other options, expected with it only --out and --title");
+      vpBadInput("--runs: beside other options, expected with it only --out and --title");
     }
     title = title.empty() ? "Runs of vlp-servo" : title;
     return true;
   }
   if (truth.empty()) {
-    fail("--truth: nothing, expected the file of the true poses (--help explains the options)");
+    vpBadInput("--truth: nothing, expected the file of the true poses (--help explains the options)");
   }
   if (estimate.empty() && fixes.empty()) {
-    fail("--estimate: nothing, expected the file of the poses to evaluate, or --fixes");
+    vpBadInput("--estimate: nothing, expected the file of the poses to evaluate, or --fixes");
   }
   settings.alignment = alignment == "origin" ? vpAlignment::origin
                                              : (alignment == "se2" ? vpAlignment::se2 : vpAlignment::none);
@@ -103,7 +98,7 @@ bool vpEvaluateOptions::parse(int argc, char **argv)
   }
   if (!gap.empty() && (!vpParseNumber(gap, settings.longestGap) || !std::isfinite(settings.longestGap) ||
                        settings.longestGap <= 0)) {
-    fail("--max-gap: " + vpShown(gap) + ", expected a number of seconds above 0");
+    vpBadInput("--max-gap: " + vpShown(gap) + ", expected a number of seconds above 0");
   }
   title = title.empty() ? std::filesystem::path(poses()).filename().string() : title;
   return true;

@@ -62,11 +62,6 @@ Files appear whole, at the end. Ctrl-C ends the work and keeps what was done so 
 Exit code: 0 done; 2 bad usage or bad input; 3 no position in any frame.
 )";
 
-[[noreturn]] void fail(const std::string &problem)
-{
-  throw vpException(vpException::badValue, problem);
-}
-
 std::string absolute(const std::string &name)
 {
   std::error_code ignored;
@@ -85,7 +80,7 @@ void refuseClashes(const std::vector<std::pair<std::string, std::string>> &input
         fs::exists(name, ignored) && !fs::is_regular_file(name, ignored); // /dev/stdout twice is fine
     for (const auto &[otherOption, otherName] : others) {
       if (!name.empty() && !otherName.empty() && !device && absolute(name) == absolute(otherName)) {
-        fail(option + ": " + name + ", which is that of " + otherOption + ", expected another file");
+        vpBadInput(option + ": " + name + ", which is that of " + otherOption + ", expected another file");
       }
     }
     others.emplace_back(option, name);
@@ -147,13 +142,13 @@ void vpLocateOptions::check() const
 {
   frames.check();
   if (rigFile.empty()) {
-    fail("--rig: nothing, expected the file of the camera on the robot");
+    vpBadInput("--rig: nothing, expected the file of the camera on the robot");
   }
   if (lampsFile.empty()) {
-    fail("--lamps: nothing, expected the file of the lamp map");
+    vpBadInput("--lamps: nothing, expected the file of the lamp map");
   }
   if (freeAttitude && twoLamps) {
-    fail("--attitude: free with --solver two, expected mount: two lamps do not tell roll and pitch");
+    vpBadInput("--attitude: free with --solver two, expected mount: two lamps do not tell roll and pitch");
   }
   std::vector<std::pair<std::string, std::string>> inputs = {
       {"--rig", rigFile}, {"--lamps", lampsFile}, {"--video", frames.video}};
@@ -165,7 +160,8 @@ void vpLocateOptions::check() const
   }
   inputs.emplace_back("--odometry", odometry);
   if (!odometry.empty() && noTrack) {
-    fail("--odometry: " + odometry + " with frames that are located each by itself, expected a sequence");
+    vpBadInput("--odometry: " + odometry +
+               " with frames that are located each by itself, expected a sequence");
   }
   refuseClashes(inputs, {{"--poses", poses}, {"--fixes", fixes}, {"--seen", seen}});
 }
@@ -176,8 +172,8 @@ vpVlpLocalizer vpLocateOptions::localizer(const vpVlpRig &rig, const vpLampMap &
   const bool positionsOnly = seen.empty() && overlay.empty() && !display;
   const size_t needed = freeAttitude ? 3 : 2, lamps = map.lamps.size();
   if (positionsOnly && lamps < needed) {
-    fail(lampsFile + ": " + std::to_string(lamps) + (lamps == 1 ? " lamp" : " lamps") + ", expected " +
-         std::to_string(needed) + " or more for a position");
+    vpBadInput(lampsFile + ": " + std::to_string(lamps) + (lamps == 1 ? " lamp" : " lamps") + ", expected " +
+               std::to_string(needed) + " or more for a position");
   }
   vpVlpLocalizer localizer(rig, map);
   localizer.tracking = !noTrack;

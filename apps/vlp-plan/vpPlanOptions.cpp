@@ -51,11 +51,6 @@ vpLedIdPlanner and vpStripePrediction explain the formulas; tutorial/plan goes t
 Exit code: 0 done; 2 bad usage or bad input; 3 the rig holds no identifiers like these, or not so many.
 )";
 
-[[noreturn]] void fail(const std::string &problem)
-{
-  throw vpException(vpException::badValue, problem);
-}
-
 //! The numbers between separators, or nothing where one is none.
 std::vector<double> numbersOf(const std::string &text, char separator)
 {
@@ -78,8 +73,8 @@ void readRange(const std::string &option, const std::string &text, const char *u
 {
   const std::vector<double> ends = numbersOf(text, ':');
   if (ends.empty() || ends.size() > 2 || !(ends.front() > 0) || ends.back() < ends.front()) {
-    fail(option + ": " + vpShown(text) + ", expected FROM:TO or one number (" + unit +
-         "), above 0 and FROM not above TO");
+    vpBadInput(option + ": " + vpShown(text) + ", expected FROM:TO or one number (" + unit +
+               "), above 0 and FROM not above TO");
   }
   low = ends.front();
   high = ends.back();
@@ -92,8 +87,8 @@ double oscillatorOf(const std::string &text)
     return text == "rc" ? 10000 : 50;
   }
   if (!vpParseNumber(text, ppm) || !std::isfinite(ppm) || ppm < 0) {
-    fail("--oscillator: " + vpShown(text) +
-         ", expected crystal (50 ppm), rc (10000 ppm) or a number of ppm from 0 up");
+    vpBadInput("--oscillator: " + vpShown(text) +
+               ", expected crystal (50 ppm), rc (10000 ppm) or a number of ppm from 0 up");
   }
   return ppm;
 }
@@ -107,8 +102,8 @@ std::vector<double> dutiesOf(const std::string &text)
     good = good && duty > 0 && duty < 1;
   }
   if (!good) {
-    fail("--duties: " + vpShown(text) +
-         ", expected up to 8 different numbers between 0 and 1, as 0.2,0.5,0.8");
+    vpBadInput("--duties: " + vpShown(text) +
+               ", expected up to 8 different numbers between 0 and 1, as 0.2,0.5,0.8");
   }
   return duties;
 }
@@ -118,7 +113,7 @@ void readNumber(const std::string &option, const std::string &text, double low, 
                 const char *expected, double &value)
 {
   if (!text.empty() && (!vpParseNumber(text, value) || !(value > low && value < high))) {
-    fail(option + ": " + vpShown(text) + ", expected " + expected);
+    vpBadInput(option + ": " + vpShown(text) + ", expected " + expected);
   }
 }
 } // namespace
@@ -192,45 +187,47 @@ bool vpPlanOptions::parse(int argc, char **argv)
 void vpPlanOptions::checkTogether(bool ook) const
 {
   if (rig.empty()) {
-    fail("--rig: nothing, expected the file of the camera on the robot (--help explains the options)");
+    vpBadInput("--rig: nothing, expected the file of the camera on the robot (--help explains the options)");
   }
   if (ook && !words) {
-    fail("--code: ook without --words, expected only with it");
+    vpBadInput("--code: ook without --words, expected only with it");
   }
   if (!check.empty()) {
     if (!out.empty() || !picture.empty() || !place.empty() || lamps > 0 || reuse > 0 || words) {
-      fail("--check: with --out, --picture, --place, --lamps, --reuse or --words, expected none of these: it "
-           "plans nothing");
+      vpBadInput(
+          "--check: with --out, --picture, --place, --lamps, --reuse or --words, expected none of these: it "
+          "plans nothing");
     }
     return;
   }
   if (place.empty() && std::isnan(highest)) {
-    fail("--heights: nothing, expected how far above the camera the lamps will hang (m), or --place");
+    vpBadInput("--heights: nothing, expected how far above the camera the lamps will hang (m), or --place");
   }
   if (place.empty() && std::isnan(diameter)) {
-    fail("--diameter: nothing, expected the diameter of the lamps (m)");
+    vpBadInput("--diameter: nothing, expected the diameter of the lamps (m)");
   }
   if (!place.empty() && lamps > 0) {
-    fail("--lamps: with --place, expected one of them: a place says how many lamps there are");
+    vpBadInput("--lamps: with --place, expected one of them: a place says how many lamps there are");
   }
   if (reuse > 0 && place.empty()) {
-    fail("--reuse: without --place, expected only with it: where lamps hang decides which are told apart");
+    vpBadInput(
+        "--reuse: without --place, expected only with it: where lamps hang decides which are told apart");
   }
   if (reuse == 1) {
-    fail("--reuse: 1, expected 2 or more");
+    vpBadInput("--reuse: 1, expected 2 or more");
   }
   if (reuse == 0 && !std::isnan(viewRadius)) {
-    fail("--view-radius: without --reuse, expected only with it");
+    vpBadInput("--view-radius: without --reuse, expected only with it");
   }
   if (!picture.empty() && std::filesystem::path(picture).extension() != ".png") {
-    fail("--picture: " + vpShown(picture) + ", expected a name that ends in .png");
+    vpBadInput("--picture: " + vpShown(picture) + ", expected a name that ends in .png");
   }
   for (const std::string &input : {rig, place}) {
     std::error_code ignored;
     for (const std::string &output : {out, picture}) {
       if (!input.empty() && !output.empty() && std::filesystem::equivalent(input, output, ignored)) {
-        fail((output == out ? "--out: " : "--picture: ") + vpShown(output) +
-             ", which is an input, expected another file");
+        vpBadInput((output == out ? "--out: " : "--picture: ") + vpShown(output) +
+                   ", which is an input, expected another file");
       }
     }
   }

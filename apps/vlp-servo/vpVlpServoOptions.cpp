@@ -56,18 +56,13 @@ Exit code: 0 the path was driven to its end, or somebody ended it; 2 bad usage o
 or --list-robots found none.
 )";
 
-[[noreturn]] void fail(const std::string &problem)
-{
-  throw vpException(vpException::badValue, problem);
-}
-
 //! Into \e value, where \e text was given.
 void readPositive(const std::string &option, const std::string &text, double &value)
 {
   if (!text.empty()) {
     value = vpNumbersOf(option, text, 1, "a number above 0")[0];
     if (value <= 0) {
-      fail(option + ": " + vpShown(text) + ", expected a number above 0");
+      vpBadInput(option + ": " + vpShown(text) + ", expected a number above 0");
     }
   }
 }
@@ -83,7 +78,7 @@ void readFence(const std::string &text, std::optional<Eigen::AlignedBox2d> &fenc
   fence =
       Eigen::AlignedBox2d(Eigen::Vector2d(corners[0], corners[1]), Eigen::Vector2d(corners[2], corners[3]));
   if (fence->isEmpty()) {
-    fail("--fence: " + vpShown(text) + ", expected " + expected);
+    vpBadInput("--fence: " + vpShown(text) + ", expected " + expected);
   }
 }
 } // namespace
@@ -130,10 +125,10 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
     return true;
   }
   if (openLoop && odometryOnly) {
-    fail("--open-loop: beside --odometry-only, expected one of them");
+    vpBadInput("--open-loop: beside --odometry-only, expected one of them");
   }
   if (display && headless) {
-    fail("--display: beside --headless, expected one of them");
+    vpBadInput("--display: beside --headless, expected one of them");
   }
   pose = openLoop ? Pose::commands : (odometryOnly ? Pose::odometry : Pose::lamps);
   readPositive("--speed", speed, loop.follower.reference.speed);
@@ -153,28 +148,28 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
 void vpVlpServoOptions::check() const
 {
   if (robot.empty()) {
-    fail("--robot: nothing, expected sim, opencr:usb or opencr:DEVICE (--help explains the options)");
+    vpBadInput("--robot: nothing, expected sim, opencr:usb or opencr:DEVICE (--help explains the options)");
   }
   if (pathFile.empty()) {
-    fail("--path: nothing, expected the file of the path to drive");
+    vpBadInput("--path: nothing, expected the file of the path to drive");
   }
   const bool sim = robot == "sim";
   if (!sim && robot.rfind("opencr:", 0) != 0) {
-    fail("--robot: " + vpShown(robot) + ", expected sim, opencr:usb or opencr:DEVICE");
+    vpBadInput("--robot: " + vpShown(robot) + ", expected sim, opencr:usb or opencr:DEVICE");
   }
   if (sim && scenario.empty()) {
-    fail("--scenario: nothing, expected the file of the world that sim drives in");
+    vpBadInput("--scenario: nothing, expected the file of the world that sim drives in");
   }
   camera.check();
   if (sim && !camera.uri.empty()) {
-    fail("--camera: " + vpShown(camera.uri) + " beside --robot sim, whose camera is the scenario's");
+    vpBadInput("--camera: " + vpShown(camera.uri) + " beside --robot sim, whose camera is the scenario's");
   }
   if (!sim && (!scenario.empty() || typical || wheelsOnly || realTime)) {
-    fail("--scenario, --typical, --wheels-only, --real-time: beside --robot " + vpShown(robot) +
-         ", expected them with sim only");
+    vpBadInput("--scenario, --typical, --wheels-only, --real-time: beside --robot " + vpShown(robot) +
+               ", expected them with sim only");
   }
   if (!sim && pose == Pose::lamps && (rigFile.empty() || lampsFile.empty() || camera.uri.empty())) {
-    fail("--rig, --lamps, --camera: expected all of them with a real robot");
+    vpBadInput("--rig, --lamps, --camera: expected all of them with a real robot");
   }
 }
 

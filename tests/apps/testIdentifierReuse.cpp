@@ -20,8 +20,8 @@ namespace
 const double near = 3; // px, of a lamp's middle
 
 //! Of the map's lamp whose middle is there, to within \e reach (px); empty where there is none.
-std::string lampAt(const vpReuseHall &hall, const Eigen::Vector2d &pixel, const vpHomogeneousMatrix &wMb,
-                   double reach = near)
+std::string idAt(const vpReuseHall &hall, const Eigen::Vector2d &pixel, const vpHomogeneousMatrix &wMb,
+                 double reach = near)
 {
   for (const vpLamp &lamp : hall.map.lamps) {
     if ((hall.pixelOf(lamp.position, wMb) - pixel).norm() < reach) {
@@ -58,7 +58,7 @@ void expectNames(const vpReuseHall &hall, const vpVlpLocation &location, const v
   for (const vpLampObservation &lamp : location.observations) {
     if (!lamp.id.empty()) {
       const double reach = near + 3 * std::sqrt(lamp.covariance.trace()); // px, where the border cuts it
-      EXPECT_EQ(lamp.id, lampAt(hall, lamp.point, wMb, reach)) << lamp.remark;
+      EXPECT_EQ(lamp.id, idAt(hall, lamp.point, wMb, reach)) << lamp.remark;
     }
     if (lamp.accepted) {
       accepted.insert(lamp.id);
@@ -166,7 +166,7 @@ TEST(IdentifierReuse, MirroredLampIsNotAcceptedAndTheFixIsKept)
       EXPECT_EQ(seen.text(row, 9), "0") << "picture " << i;
       ++refused;
     } else if (seen.text(row, 9) == "1") {
-      EXPECT_EQ(seen.text(row, 2), lampAt(hall, point, poses[i])) << "picture " << i;
+      EXPECT_EQ(seen.text(row, 2), idAt(hall, point, poses[i])) << "picture " << i;
       ++accepted;
     }
   }

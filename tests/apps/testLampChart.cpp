@@ -36,7 +36,7 @@ vpVlpRig rigOf(double exposure)
   return rig;
 }
 
-vpLampMap mapOf(const std::vector<Lamp> &lamps)
+vpLampMap mapOfLamps(const std::vector<Lamp> &lamps)
 {
   vpLampMap map;
   for (const Lamp &lamp : lamps) {
@@ -104,12 +104,12 @@ double numberBehind(const std::string &word, const std::string &text)
 TEST(LampChart, IsOfTheLampWithoutIdAndOfNoOther)
 {
   const vpImage<unsigned char> I = imageOf(vpLocateScene::picture());
-  const Seen all(I, rigOf(trueExposure), mapOf(vpLocateScene::lamps));
+  const Seen all(I, rigOf(trueExposure), mapOfLamps(vpLocateScene::lamps));
   EXPECT_EQ(all.observations.size(), 3u);
   EXPECT_TRUE(all.charts.empty());
   EXPECT_EQ(violetPixels(all.overlay), 0);
 
-  const Seen wrong(I, rigOf(trueExposure), mapOf(lastOneWrong()));
+  const Seen wrong(I, rigOf(trueExposure), mapOfLamps(lastOneWrong()));
   ASSERT_EQ(wrong.charts.size(), 1u);
   EXPECT_EQ(wrong.observations[wrong.charts[0].lamp].id, "");
   EXPECT_NEAR(wrong.observations[wrong.charts[0].lamp].features.frequency, 4100, 10);
@@ -122,7 +122,7 @@ TEST(LampChart, IsOfTheLampWithoutIdAndOfNoOther)
 
 TEST(LampChart, WaveLiesOnTheLight)
 {
-  const Seen seen(imageOf(vpLocateScene::picture()), rigOf(trueExposure), mapOf(lastOneWrong()));
+  const Seen seen(imageOf(vpLocateScene::picture()), rigOf(trueExposure), mapOfLamps(lastOneWrong()));
   ASSERT_EQ(seen.charts.size(), 1u);
   const vpLampChart &chart = seen.charts[0];
   ASSERT_GT(chart.light.size(), 30u);
@@ -138,7 +138,7 @@ TEST(LampChart, WaveLiesOnTheLight)
 
 TEST(LampChart, SaysTheExposureThatTheRigClaimsAndTheOneThatTheStripesShow)
 {
-  const Seen seen(imageOf(vpLocateScene::picture()), rigOf(4 * trueExposure), mapOf(lastOneWrong()));
+  const Seen seen(imageOf(vpLocateScene::picture()), rigOf(4 * trueExposure), mapOfLamps(lastOneWrong()));
   ASSERT_EQ(seen.charts.size(), 1u);
   const std::vector<std::string> &caption = seen.charts[0].caption;
   ASSERT_EQ(caption.size(), 2u);
@@ -151,7 +151,7 @@ TEST(LampChart, ThreeLargestOnly)
   std::vector<Lamp> lamps = vpLocateScene::lamps;
   lamps.push_back({"D", -0.3, 0.25, 1.2, 2500}); // nearer, so larger
   const vpImage<unsigned char> I = imageOf(vpLocateScene::picture(vpLocateScene::robot(0, 0, 0), lamps));
-  const Seen seen(I, rigOf(trueExposure), mapOf({{"E", 0, 0, 1.6, 5000}}));
+  const Seen seen(I, rigOf(trueExposure), mapOfLamps({{"E", 0, 0, 1.6, 5000}}));
   ASSERT_EQ(seen.observations.size(), 4u);
   ASSERT_EQ(seen.charts.size(), 3u);
   EXPECT_NEAR(seen.observations[seen.charts[0].lamp].features.frequency, 2500, 10);
@@ -160,7 +160,7 @@ TEST(LampChart, ThreeLargestOnly)
 TEST(LampChart, ARegionWithoutAnythingToShowHasNone)
 {
   const vpImage<unsigned char> I = imageOf(vpLocateScene::picture());
-  const vpLedDetector detector(rigOf(trueExposure), mapOf(vpLocateScene::lamps));
+  const vpLedDetector detector(rigOf(trueExposure), mapOfLamps(vpLocateScene::lamps));
   vpLampObservation steady, outside, nowhere;
   outside.features.signal = nowhere.features.signal = vpStripeFeatures::Signal::coded;
   outside.outline.shape = nowhere.outline.shape = vpLampOutline::Shape::ellipse;

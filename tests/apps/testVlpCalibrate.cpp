@@ -23,7 +23,7 @@ using namespace VISP_NAMESPACE_NAME;
 
 namespace
 {
-constexpr int done = 0, badInput = 2, nothingFound = 3;
+using namespace vpStatus;
 
 //! A short run: half a turn on the spot and a little way, under lamps of two heights, the camera leaning.
 const char *const scenario = R"(rig: %/rigs/ub300-800x600.yaml

@@ -21,7 +21,7 @@ using namespace VISP_NAMESPACE_NAME;
 
 namespace
 {
-constexpr int done = 0, badInput = 2, nothingFound = 3;
+using namespace vpStatus;
 
 const std::string fixesHeader =
     "timestamp_s,x,y,z,roll,pitch,yaw,sigma_x,sigma_y,sigma_z,sigma_yaw,cov_xy,lamps,state,compute_s\n";

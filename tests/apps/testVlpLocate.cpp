@@ -26,15 +26,13 @@ using vpLocateScene::with;
 
 const double x = 0.06, y = -0.04, yaw = 0.5; // m, rad; where the robot of the scene's picture stands
 
-const std::vector<std::string> fixColumns = {"timestamp_s", "x",      "y",       "z",       "roll",
-                                             "pitch",       "yaw",    "sigma_x", "sigma_y", "sigma_z",
-                                             "sigma_yaw",   "cov_xy", "lamps",   "state",   "compute_s"};
+using vpLocateScene::fixColumns;
 const std::vector<std::string> seenColumns = {"timestamp_s", "file",        "lamp_id",      "u",
                                               "v",           "diameter_px", "frequency_hz", "duty",
                                               "confidence",  "accepted",    "symbols"};
 
 //! Rows of a TUM trajectory as numbers, without its comments.
-std::vector<std::vector<double>> tum(const std::string &text)
+std::vector<std::vector<double>> tumRows(const std::string &text)
 {
   std::vector<std::vector<double>> rows;
   std::istringstream lines(text);
@@ -53,9 +51,9 @@ std::vector<std::vector<double>> tum(const std::string &text)
 }
 
 //! One row, at the scene's pose.
-void expectPose(const std::string &text, double timestamp)
+void expectTumPose(const std::string &text, double timestamp)
 {
-  const auto rows = tum(text);
+  const auto rows = tumRows(text);
   ASSERT_EQ(rows.size(), 1u) << text;
   ASSERT_EQ(rows[0].size(), 8u) << text;
   EXPECT_EQ(rows[0][0], timestamp);
@@ -87,7 +85,7 @@ TEST(VlpLocate, SamePictureOnEveryWayInGivesTheSamePose)
                                                       std::string(grey.data, grey.data + grey.total()));
 
   const std::string pose = stdoutOf(with(rig, {"--image", file}));
-  expectPose(pose, 0);
+  expectTumPose(pose, 0);
   EXPECT_EQ(pose.rfind("# timestamp tx ty tz qx qy qz qw", 0), 0u) << pose;
   EXPECT_EQ(stdoutOf(with(rig, {"--image", file})), pose);
   EXPECT_EQ(stdoutOf(with(rig, {"--image", file, "--no-track"})), pose);
@@ -110,7 +108,7 @@ TEST(VlpLocate, DeepAndColourPicturesGiveTheSamePose)
   cv::cvtColor(grey, alpha, cv::COLOR_GRAY2BGRA);
   EXPECT_EQ(stdoutOf(with(rig, {"--image", folder.write("deep.png", encoded(".png", deep))})), pose);
   EXPECT_EQ(stdoutOf(with(rig, {"--image", folder.write("alpha.png", encoded(".png", alpha))})), pose);
-  expectPose(stdoutOf(with(rig, {"--image", folder.write("grey.jpg", encoded(".jpg", grey))})), 0);
+  expectTumPose(stdoutOf(with(rig, {"--image", folder.write("grey.jpg", encoded(".jpg", grey))})), 0);
 }
 
 TEST(VlpLocate, SolversAndAttitudesAgree)
@@ -118,11 +116,11 @@ TEST(VlpLocate, SolversAndAttitudesAgree)
   const vpTemporaryFolder folder;
   const auto rig = vpLocateScene::writeRig(folder);
   const std::string file = folder.write("a.png", encoded(".png", vpLocateScene::picture()));
-  expectPose(stdoutOf(with(rig, {"--image", file, "--solver", "two"})), 0);
+  expectTumPose(stdoutOf(with(rig, {"--image", file, "--solver", "two"})), 0);
 
   // Lamps this close together tell a tilt only roughly: the rig says how far the robot may lean.
   vpLocateScene::writeRig(folder, 640, 480, ", rotation_sigma_deg: [1, 1, 1]");
-  const auto free = tum(stdoutOf(with(rig, {"--image", file, "--attitude", "free"})));
+  const auto free = tumRows(stdoutOf(with(rig, {"--image", file, "--attitude", "free"})));
   ASSERT_EQ(free.size(), 1u);
   EXPECT_NEAR(free[0][1], x, 0.05);
   EXPECT_NEAR(free[0][2], y, 0.05);
@@ -300,7 +298,7 @@ TEST(VlpLocate, TellsTheExposureThatTheStripesShow)
     folder.write("rig.yaml", text.replace(text.find(stated), stated.size(), "exposure_s: " + wrong));
     vpProcess locate("vlp-locate", with(rig, {"--image", file}));
     EXPECT_EQ(locate.wait(), 0) << locate.err();
-    expectPose(locate.out(), 0);
+    expectTumPose(locate.out(), 0);
     EXPECT_EQ(locate.err().find("shutter.exposure_s: ") != std::string::npos, wrong != "43.1e-6")
         << locate.err();
   }
@@ -325,7 +323,7 @@ TEST(VlpLocate, TwoLampsAtTwoHeightsCanBeAmbiguous)
   EXPECT_EQ(fixes.text(0, 13), "ambiguous");
   EXPECT_NEAR(fixes.number(0, 1), 1.6, 0.05); // the base nearer to the floor
   EXPECT_NEAR(fixes.number(0, 2), 1.2, 0.05);
-  EXPECT_TRUE(tum(folder.read("poses.tum")).empty());
+  EXPECT_TRUE(tumRows(folder.read("poses.tum")).empty());
 }
 
 TEST(VlpLocate, OverlayIsAColourPictureOfEachFrame)
@@ -378,7 +376,7 @@ TEST(VlpLocate, InterruptFinishesWhatWasDone)
   EXPECT_NE(locate.err().find("stopped after "), std::string::npos) << locate.err();
   EXPECT_NE(locate.err().find(" of 5000 frames"), std::string::npos) << locate.err();
 
-  const size_t frames = tum(folder.read("poses.tum")).size();
+  const size_t frames = tumRows(folder.read("poses.tum")).size();
   EXPECT_GE(frames, 2u);
   EXPECT_LT(frames, 5000u);
   EXPECT_EQ(vpCsvTable::load(folder / "fixes.csv", fixColumns).rows(), frames);

@@ -19,10 +19,11 @@ namespace
 using vpLocateScene::encoded;
 using vpLocateScene::with;
 
-constexpr int badInput = 2, nothingFound = 3;
+using namespace vpStatus;
 
 //! Runs vlp-locate and expects one line on stderr with all of \e parts, and no stdout but a comment.
-void expectOneLine(const std::vector<std::string> &arguments, int code, const std::vector<std::string> &parts)
+void expectLocateRefuses(const std::vector<std::string> &arguments, int code,
+                         const std::vector<std::string> &parts)
 {
   const std::string out = vpExpectRefused("vlp-locate", arguments, code, parts);
   EXPECT_TRUE(out.empty() || (out[0] == '#' && out.find('\n') == out.size() - 1))
@@ -71,7 +72,7 @@ TEST(VlpLocateBadInput, BadPictureIsOneClearLine)
     const vpTemporaryFolder folder;
     const auto rig = vpLocateScene::writeRig(folder);
     const std::string picture = folder.write(bad.name, bad.bytes);
-    expectOneLine(with(rig, {"--image", picture}), bad.code, with(bad.parts, {picture}));
+    expectLocateRefuses(with(rig, {"--image", picture}), bad.code, with(bad.parts, {picture}));
   }
 }
 
@@ -104,8 +105,9 @@ TEST(VlpLocateBadInput, PicturesOfOneRowOrPixelThatTheRigAsksForHoldNothing)
     const auto rig = vpLocateScene::writeRig(folder, size.width, size.height);
     const std::string picture =
         folder.write("a.png", encoded(".png", cv::Mat(size, CV_8UC1, cv::Scalar(200))));
-    expectOneLine(with(rig, {"--image", picture}), nothingFound, {picture, "no position"});
-    expectOneLine(with(rig, {"--image", picture, "--overlay", folder / "overlay"}), nothingFound, {picture});
+    expectLocateRefuses(with(rig, {"--image", picture}), nothingFound, {picture, "no position"});
+    expectLocateRefuses(with(rig, {"--image", picture, "--overlay", folder / "overlay"}), nothingFound,
+                        {picture});
     EXPECT_TRUE(std::filesystem::exists(folder / "overlay/000000-a.png"));
   }
 }
@@ -162,11 +164,11 @@ TEST(VlpLocateBadInput, LampMapThatCanGiveNoPosition)
   auto rig = vpLocateScene::writeRig(folder);
   const std::string picture = folder.write("a.png", encoded(".png", vpLocateScene::picture()));
   folder.write("lamps.yaml", vpLocateScene::lampsText({vpLocateScene::lamps[0]}));
-  expectOneLine(with(rig, {"--image", picture}), badInput,
-                {folder / "lamps.yaml: 1 lamp, expected 2 or more"});
+  expectLocateRefuses(with(rig, {"--image", picture}), badInput,
+                      {folder / "lamps.yaml: 1 lamp, expected 2 or more"});
   folder.write("lamps.yaml", vpLocateScene::lampsText({vpLocateScene::lamps[0], vpLocateScene::lamps[1]}));
-  expectOneLine(with(rig, {"--image", picture, "--attitude", "free"}), badInput,
-                {folder / "lamps.yaml: 2 lamps, expected 3 or more"});
+  expectLocateRefuses(with(rig, {"--image", picture, "--attitude", "free"}), badInput,
+                      {folder / "lamps.yaml: 2 lamps, expected 3 or more"});
 
   // Lamps can be looked at without a position.
   folder.write("lamps.yaml", vpLocateScene::lampsText({vpLocateScene::lamps[0]}));
@@ -181,19 +183,23 @@ TEST(VlpLocateBadInput, BadRigLampsAndListsOfFrames)
   const auto rig = vpLocateScene::writeRig(folder);
   const std::string picture = folder.write("a.png", encoded(".png", vpLocateScene::picture()));
   const std::string lamps = rig[3], text = folder.write("text.txt", "nothing of use\n");
-  expectOneLine({"--rig", folder / "none.yaml", "--lamps", lamps, "--image", picture}, badInput,
-                {folder / "none.yaml: cannot be opened: No such file"});
-  expectOneLine({"--rig", rig[1], "--lamps", text, "--image", picture}, badInput,
-                {text, "expected a mapping"});
-  expectOneLine({"--rig", lamps, "--lamps", lamps, "--image", picture}, badInput, {lamps, "camera"});
-  expectOneLine(with(rig, {"--run", folder / "nowhere"}), badInput,
-                {folder / "nowhere/frames.csv: cannot be opened"});
-  expectOneLine(with(rig, {"--images", folder / "b%d.png"}), badInput, {folder / "b%d.png", "no such file"});
-  expectOneLine(with(rig, {"--images", folder / "a.png"}), badInput, {"expected one number as %d or %04d"});
-  expectOneLine(with(rig, {"--video", folder / "no.avi"}), badInput, {folder / "no.avi: cannot be opened"});
-  expectOneLine(with(rig, {"--video", text}), badInput, {text + ": no"});
+  expectLocateRefuses({"--rig", folder / "none.yaml", "--lamps", lamps, "--image", picture}, badInput,
+                      {folder / "none.yaml: cannot be opened: No such file"});
+  expectLocateRefuses({"--rig", rig[1], "--lamps", text, "--image", picture}, badInput,
+                      {text, "expected a mapping"});
+  expectLocateRefuses({"--rig", lamps, "--lamps", lamps, "--image", picture}, badInput, {lamps, "camera"});
+  expectLocateRefuses(with(rig, {"--run", folder / "nowhere"}), badInput,
+                      {folder / "nowhere/frames.csv: cannot be opened"});
+  expectLocateRefuses(with(rig, {"--images", folder / "b%d.png"}), badInput,
+                      {folder / "b%d.png", "no such file"});
+  expectLocateRefuses(with(rig, {"--images", folder / "a.png"}), badInput,
+                      {"expected one number as %d or %04d"});
+  expectLocateRefuses(with(rig, {"--video", folder / "no.avi"}), badInput,
+                      {folder / "no.avi: cannot be opened"});
+  expectLocateRefuses(with(rig, {"--video", text}), badInput, {text + ": no"});
   folder.write("frames.csv", "time,file\n0,a.png\n");
-  expectOneLine({"--run", folder.path()}, badInput, {folder / "frames.csv:1", "expected timestamp_s,file"});
+  expectLocateRefuses({"--run", folder.path()}, badInput,
+                      {folder / "frames.csv:1", "expected timestamp_s,file"});
 }
 
 TEST(VlpLocateBadInput, OutputThatCannotBeWrittenIsAnErrorBeforeTheWork)
@@ -202,17 +208,18 @@ TEST(VlpLocateBadInput, OutputThatCannotBeWrittenIsAnErrorBeforeTheWork)
   const auto rig = vpLocateScene::writeRig(folder);
   const std::string picture = folder.write("a.png", encoded(".png", vpLocateScene::picture()));
   for (const std::string option : {"--poses", "--fixes", "--seen"}) {
-    expectOneLine(with(rig, {"--image", picture, option, folder / "no/out"}), badInput,
-                  {folder / "no/out: cannot be written: No such file or directory"});
-    expectOneLine(with(rig, {"--image", picture, option, folder.path()}), badInput,
-                  {folder.path() + ": cannot be written: Is a directory"});
+    expectLocateRefuses(with(rig, {"--image", picture, option, folder / "no/out"}), badInput,
+                        {folder / "no/out: cannot be written: No such file or directory"});
+    expectLocateRefuses(with(rig, {"--image", picture, option, folder.path()}), badInput,
+                        {folder.path() + ": cannot be written: Is a directory"});
   }
-  expectOneLine(with(rig, {"--image", picture, "--overlay", picture}), badInput,
-                {picture + ": the folder cannot be made"});
-  expectOneLine(with(rig, {"--image", picture, "--overlay", "/proc/overlay"}), badInput, {"/proc/overlay"});
+  expectLocateRefuses(with(rig, {"--image", picture, "--overlay", picture}), badInput,
+                      {picture + ": the folder cannot be made"});
+  expectLocateRefuses(with(rig, {"--image", picture, "--overlay", "/proc/overlay"}), badInput,
+                      {"/proc/overlay"});
   // An error of one output leaves nothing of the others.
   const vpTemporaryFolder outputs;
-  expectOneLine(
+  expectLocateRefuses(
       with(rig, {"--image", picture, "--poses", outputs / "poses.tum", "--seen", outputs / "no/seen.csv"}),
       badInput, {"no/seen.csv"});
   EXPECT_EQ(outputs.count(), 0u);
@@ -228,22 +235,23 @@ TEST(VlpLocateBadInput, BadUsage)
   const auto rig = vpLocateScene::writeRig(folder);
   const std::string picture = folder.write("a.png", encoded(".png", vpLocateScene::picture()));
   const std::vector<std::string> good = with(rig, {"--image", picture});
-  expectOneLine({}, badInput, {"--run, --images, --image, --video and --camera", "--help"});
-  expectOneLine({"--image", picture}, badInput, {"--rig"});
-  expectOneLine({"--rig", rig[1], "--image", picture}, badInput, {"--lamps"});
-  expectOneLine(with(good, {"--run", folder.path()}), badInput, {"more than one source"});
-  expectOneLine(with(good, {"--nonsense"}), badInput, {"--nonsense"});
-  expectOneLine(with(good, {"--frames", "0"}), badInput, {"--frames: 0, expected a whole number from 1"});
-  expectOneLine({"a.png"}, badInput, {"a.png"});
-  expectOneLine(with(good, {"--solver", "three"}), badInput, {"--solver: three", "all|two"});
-  expectOneLine(with(good, {"--attitude", ""}), badInput, {"--attitude", "mount|free"});
-  expectOneLine(with(good, {"--solver", "two", "--attitude", "free"}), badInput,
-                {"--attitude: free", "mount"});
-  expectOneLine(with(good, {"--poses", ""}), badInput, {"--poses", "empty"});
-  expectOneLine(with(good, {"--poses", folder / "o", "--fixes", folder / "./o"}), badInput,
-                {"--fixes", "--poses"});
-  expectOneLine(with(good, {"--poses", picture}), badInput, {"--poses", "--image"});
-  expectOneLine(with(good, {"--seen", rig[1]}), badInput, {"--seen", "--rig"});
-  expectOneLine(with(rig, {"--image"}), badInput, {"--image"});
-  expectOneLine(with(rig, {"--image", "two\nlines.png"}), badInput, {"two\\x0alines.png"});
+  expectLocateRefuses({}, badInput, {"--run, --images, --image, --video and --camera", "--help"});
+  expectLocateRefuses({"--image", picture}, badInput, {"--rig"});
+  expectLocateRefuses({"--rig", rig[1], "--image", picture}, badInput, {"--lamps"});
+  expectLocateRefuses(with(good, {"--run", folder.path()}), badInput, {"more than one source"});
+  expectLocateRefuses(with(good, {"--nonsense"}), badInput, {"--nonsense"});
+  expectLocateRefuses(with(good, {"--frames", "0"}), badInput,
+                      {"--frames: 0, expected a whole number from 1"});
+  expectLocateRefuses({"a.png"}, badInput, {"a.png"});
+  expectLocateRefuses(with(good, {"--solver", "three"}), badInput, {"--solver: three", "all|two"});
+  expectLocateRefuses(with(good, {"--attitude", ""}), badInput, {"--attitude", "mount|free"});
+  expectLocateRefuses(with(good, {"--solver", "two", "--attitude", "free"}), badInput,
+                      {"--attitude: free", "mount"});
+  expectLocateRefuses(with(good, {"--poses", ""}), badInput, {"--poses", "empty"});
+  expectLocateRefuses(with(good, {"--poses", folder / "o", "--fixes", folder / "./o"}), badInput,
+                      {"--fixes", "--poses"});
+  expectLocateRefuses(with(good, {"--poses", picture}), badInput, {"--poses", "--image"});
+  expectLocateRefuses(with(good, {"--seen", rig[1]}), badInput, {"--seen", "--rig"});
+  expectLocateRefuses(with(rig, {"--image"}), badInput, {"--image"});
+  expectLocateRefuses(with(rig, {"--image", "two\nlines.png"}), badInput, {"two\\x0alines.png"});
 }

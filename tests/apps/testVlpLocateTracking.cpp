@@ -25,11 +25,8 @@ namespace
 using vpLocateScene::encoded;
 using vpLocateScene::with;
 
-constexpr int badInput = 2;
-
-const std::vector<std::string> fixColumns = {"timestamp_s", "x",      "y",       "z",       "roll",
-                                             "pitch",       "yaw",    "sigma_x", "sigma_y", "sigma_z",
-                                             "sigma_yaw",   "cov_xy", "lamps",   "state",   "compute_s"};
+using namespace vpStatus;
+using vpLocateScene::fixColumns;
 
 //! Runs vlp-locate and expects that it refuses in one line with all of \e parts, and writes nothing.
 void expectRefused(const std::vector<std::string> &arguments, const std::vector<std::string> &parts)

@@ -20,7 +20,7 @@ using namespace VISP_NAMESPACE_NAME;
 
 namespace
 {
-constexpr int done = 0, badInput = 2, nothingFound = 3;
+using namespace vpStatus;
 
 const std::string rig = std::string(VLP_DATA_DIR) + "/rigs/ub300-800x600.yaml";
 const std::string hall = std::string(VLP_DATA_DIR) + "/lamps/hall.yaml";

@@ -33,8 +33,8 @@ std::vector<std::string> briefDrive(const vpTemporaryFolder &folder)
   return with(sim, {"--path", path});
 }
 
-void expectOneLine(const std::vector<std::string> &arguments, const std::vector<std::string> &parts,
-                   int code = 2)
+void expectServoRefuses(const std::vector<std::string> &arguments, const std::vector<std::string> &parts,
+                        int code = 2)
 {
   vpExpectRefused("vlp-servo", arguments, code, parts);
 }
@@ -144,27 +144,27 @@ TEST(VlpServo, BadUsage)
 {
   const vpTemporaryFolder folder;
   const std::vector<std::string> good = briefDrive(folder);
-  expectOneLine({}, {"--robot"});
-  expectOneLine({"--robot", "sim", "--path", "x"}, {"--scenario"});
-  expectOneLine(sim, {"--path"});
-  expectOneLine(with(sim, {"--path", folder / "none.yaml"}), {"none.yaml"});
-  expectOneLine({"--robot", "tank", "--path", "x"}, {"--robot: tank", "opencr:usb"});
-  expectOneLine({"--robot", "opencr:usb", "--path", "x"}, {"--rig, --lamps, --camera"});
-  expectOneLine(with(good, {"--speed", "0"}), {"--speed: 0"});
-  expectOneLine(with(good, {"--speed", "fast"}), {"--speed: fast"});
-  expectOneLine(with(good, {"--gain", "-1"}), {"--gain: -1"});
-  expectOneLine(with(good, {"--laps", "0"}), {"--laps"});
-  expectOneLine(with(good, {"--seed", "-1"}), {"--seed: -1, expected a whole number"});
-  expectOneLine(with(good, {"--start", "1,2"}), {"--start: 1,2", "x,y,yaw"});
-  expectOneLine(with(good, {"--fence", "1,0,0,1"}), {"--fence: 1,0,0,1"});
-  expectOneLine(with(good, {"--open-loop", "--odometry-only"}), {"--open-loop"});
-  expectOneLine(with(good, {"--display", "--headless"}), {"--display"});
-  expectOneLine(with(good, {"--camera", "uvc://1:2"}), {"--camera"});
-  expectOneLine(with(good, {"--rig", folder / "rig.yaml"}), {"rig.yaml"});
+  expectServoRefuses({}, {"--robot"});
+  expectServoRefuses({"--robot", "sim", "--path", "x"}, {"--scenario"});
+  expectServoRefuses(sim, {"--path"});
+  expectServoRefuses(with(sim, {"--path", folder / "none.yaml"}), {"none.yaml"});
+  expectServoRefuses({"--robot", "tank", "--path", "x"}, {"--robot: tank", "opencr:usb"});
+  expectServoRefuses({"--robot", "opencr:usb", "--path", "x"}, {"--rig, --lamps, --camera"});
+  expectServoRefuses(with(good, {"--speed", "0"}), {"--speed: 0"});
+  expectServoRefuses(with(good, {"--speed", "fast"}), {"--speed: fast"});
+  expectServoRefuses(with(good, {"--gain", "-1"}), {"--gain: -1"});
+  expectServoRefuses(with(good, {"--laps", "0"}), {"--laps"});
+  expectServoRefuses(with(good, {"--seed", "-1"}), {"--seed: -1, expected a whole number"});
+  expectServoRefuses(with(good, {"--start", "1,2"}), {"--start: 1,2", "x,y,yaw"});
+  expectServoRefuses(with(good, {"--fence", "1,0,0,1"}), {"--fence: 1,0,0,1"});
+  expectServoRefuses(with(good, {"--open-loop", "--odometry-only"}), {"--open-loop"});
+  expectServoRefuses(with(good, {"--display", "--headless"}), {"--display"});
+  expectServoRefuses(with(good, {"--camera", "uvc://1:2"}), {"--camera"});
+  expectServoRefuses(with(good, {"--rig", folder / "rig.yaml"}), {"rig.yaml"});
   folder.write("file", "text");
-  expectOneLine(with(good, {"--log", folder / "file"}), {"exists, expected a new or empty"});
-  expectOneLine({"--robot", "sim", "--scenario", folder / "path.yaml", "--path", folder / "path.yaml"},
-                {"path.yaml"});
+  expectServoRefuses(with(good, {"--log", folder / "file"}), {"exists, expected a new or empty"});
+  expectServoRefuses({"--robot", "sim", "--scenario", folder / "path.yaml", "--path", folder / "path.yaml"},
+                     {"path.yaml"});
 }
 
 TEST(VlpServo, HelpNamesEveryOptionAndFile)

@@ -53,7 +53,7 @@ std::string simulate(const std::vector<std::string> &arguments)
 }
 
 //! Runs a program that should say one line on stderr with all of \e parts and end with bad input.
-void expectOneLine(const std::vector<std::string> &arguments, const std::vector<std::string> &parts)
+void expectSimulateRefuses(const std::vector<std::string> &arguments, const std::vector<std::string> &parts)
 {
   EXPECT_EQ(vpExpectRefused("vlp-simulate", arguments, 2, parts), "") << testing::PrintToString(arguments);
 }
@@ -210,11 +210,13 @@ TEST(VlpSimulate, FolderThatIsNotEmptyIsLeftAlone)
   folder.write("mine/diary.txt", "dear diary");
   folder.write("file", "text");
   const size_t before = folder.count();
-  expectOneLine({"--scenario", scenario, "--out", folder / "mine"},
-                {folder / "mine", "exists, expected a new or empty"});
-  expectOneLine({"--scenario", scenario, "--out", folder / "mine/"}, {"exists, expected a new or empty"});
-  expectOneLine({"--scenario", scenario, "--out", folder / "file"}, {"exists, expected a new or empty"});
-  expectOneLine({"--scenario", scenario, "--out", folder / "file/run"}, {"file/run"});
+  expectSimulateRefuses({"--scenario", scenario, "--out", folder / "mine"},
+                        {folder / "mine", "exists, expected a new or empty"});
+  expectSimulateRefuses({"--scenario", scenario, "--out", folder / "mine/"},
+                        {"exists, expected a new or empty"});
+  expectSimulateRefuses({"--scenario", scenario, "--out", folder / "file"},
+                        {"exists, expected a new or empty"});
+  expectSimulateRefuses({"--scenario", scenario, "--out", folder / "file/run"}, {"file/run"});
   EXPECT_EQ(names(folder / "mine"), std::vector<std::string>{"diary.txt"});
   EXPECT_EQ(folder.count(), before);
 }
@@ -237,8 +239,9 @@ TEST(VlpSimulate, FolderThatCannotBeWritten)
 {
   const vpTemporaryFolder folder;
   const std::string scenario = writeScenario(folder, 1);
-  expectOneLine({"--scenario", scenario, "--out", "/proc/run"}, {"/proc/run: the folder cannot be made"});
-  expectOneLine({"--scenario", scenario, "--out", "/dev/null/run"}, {"/dev/null/run"});
+  expectSimulateRefuses({"--scenario", scenario, "--out", "/proc/run"},
+                        {"/proc/run: the folder cannot be made"});
+  expectSimulateRefuses({"--scenario", scenario, "--out", "/dev/null/run"}, {"/dev/null/run"});
 }
 
 TEST(VlpSimulate, NothingIsLeftAfterAnError)
@@ -247,8 +250,8 @@ TEST(VlpSimulate, NothingIsLeftAfterAnError)
   const std::string scenario = writeScenario(folder, 1);
   const size_t before = folder.count();
   folder.write("scenario.yaml", folder.read("scenario.yaml") + "colour: red\n");
-  expectOneLine({"--scenario", scenario, "--out", folder / "a/b/run"},
-                {"scenario.yaml:5: colour: unknown key"});
+  expectSimulateRefuses({"--scenario", scenario, "--out", folder / "a/b/run"},
+                        {"scenario.yaml:5: colour: unknown key"});
   // One that is found only once the folder is begun: a picture that does not fit into a file of this size.
   writeScenario(folder, 1);
   const SmallFiles limit;
@@ -262,23 +265,23 @@ TEST(VlpSimulate, BadUsage)
 {
   const vpTemporaryFolder folder;
   const std::string scenario = writeScenario(folder, 1), run = folder / "run";
-  expectOneLine({}, {"--scenario"});
-  expectOneLine({"--out", run}, {"--scenario"});
-  expectOneLine({"--scenario", scenario}, {"--out"});
+  expectSimulateRefuses({}, {"--scenario"});
+  expectSimulateRefuses({"--out", run}, {"--scenario"});
+  expectSimulateRefuses({"--scenario", scenario}, {"--out"});
   const std::vector<std::string> good = {"--scenario", scenario, "--out", run};
-  expectOneLine(with(good, {"--seed", "-1"}), {"--seed: -1, expected a whole number"});
-  expectOneLine(with(good, {"--seed", "many"}), {"--seed"});
-  expectOneLine(with(good, {"--seed", "1e3"}), {"--seed"});
-  expectOneLine(with(good, {"--seed", "18446744073709551616"}), {"--seed"});
-  expectOneLine(with(good, {"--frames", "0"}), {"--frames"});
-  expectOneLine(with(good, {"--frames", "-3"}), {"--frames"});
-  expectOneLine(with(good, {"--every", "0"}), {"--every: 0, expected a whole number from 1 to"});
-  expectOneLine(with(good, {"--format", "gif"}), {"--format: gif", "png"});
-  expectOneLine(with(good, {"--nonsense"}), {"--nonsense"});
-  expectOneLine({"--scenario", "", "--out", run}, {"--scenario"});
-  expectOneLine({"--scenario", scenario, "--out", ""}, {"--out"});
-  expectOneLine({"--scenario", folder / "none.yaml", "--out", run}, {"none.yaml: cannot be opened"});
-  expectOneLine({"--scenario", folder.path(), "--out", run}, {folder.path()});
+  expectSimulateRefuses(with(good, {"--seed", "-1"}), {"--seed: -1, expected a whole number"});
+  expectSimulateRefuses(with(good, {"--seed", "many"}), {"--seed"});
+  expectSimulateRefuses(with(good, {"--seed", "1e3"}), {"--seed"});
+  expectSimulateRefuses(with(good, {"--seed", "18446744073709551616"}), {"--seed"});
+  expectSimulateRefuses(with(good, {"--frames", "0"}), {"--frames"});
+  expectSimulateRefuses(with(good, {"--frames", "-3"}), {"--frames"});
+  expectSimulateRefuses(with(good, {"--every", "0"}), {"--every: 0, expected a whole number from 1 to"});
+  expectSimulateRefuses(with(good, {"--format", "gif"}), {"--format: gif", "png"});
+  expectSimulateRefuses(with(good, {"--nonsense"}), {"--nonsense"});
+  expectSimulateRefuses({"--scenario", "", "--out", run}, {"--scenario"});
+  expectSimulateRefuses({"--scenario", scenario, "--out", ""}, {"--out"});
+  expectSimulateRefuses({"--scenario", folder / "none.yaml", "--out", run}, {"none.yaml: cannot be opened"});
+  expectSimulateRefuses({"--scenario", folder.path(), "--out", run}, {folder.path()});
   EXPECT_FALSE(fs::exists(run));
 }
 

@@ -13,6 +13,12 @@
 
 #include "common/vpProcess.h"
 
+//! How a program ends.
+namespace vpStatus
+{
+constexpr int done = 0, badInput = 2, nothingFound = 3;
+}
+
 /*!
   Runs a program and expects that it ends with \e code and one line on stderr, an error with all of \e parts.
   \return What it wrote to stdout.

@@ -40,6 +40,11 @@ struct Lamp {
 const std::vector<Lamp> lamps = {
     {"A", -0.35, -0.28, 1.6, 2000}, {"B", 0.36, -0.25, 1.6, 3000}, {"C", 0.05, 0.33, 1.6, 4100}};
 
+//! What --fixes writes.
+const std::vector<std::string> fixColumns = {"timestamp_s", "x",      "y",       "z",       "roll",
+                                             "pitch",       "yaw",    "sigma_x", "sigma_y", "sigma_z",
+                                             "sigma_yaw",   "cov_xy", "lamps",   "state",   "compute_s"};
+
 //! A robot that stands level on the floor: m, rad.
 inline vpHomogeneousMatrix robot(double x, double y, double yaw)
 {

@@ -15,9 +15,9 @@ using namespace paintedLamps;
 namespace
 {
 const double radius = 32;
-const double phases[] = {0, 0.29, 0.57, 0.83};
+const double ghostPhases[] = {0, 0.29, 0.57, 0.83};
 
-vpPaintedLamp lamp(double phase)
+vpPaintedLamp lampInPhase(double phase)
 {
   return disc(95.3, 94.8, radius, 170, 8, 0.5, phase);
 }
@@ -54,13 +54,13 @@ TEST(GhostImages, GhostOfALampDoesNotMoveIt)
   for (const double share : {0.04, 0.1, 0.2, 0.3})
     for (const double apart : {0.25, 0.5, 1.0}) // radii
       for (const double angle : {0.4, 2.0, 4.1})
-        for (const double phase : phases) {
-          vpPaintedLamp ghost = lamp(phase);
+        for (const double phase : ghostPhases) {
+          vpPaintedLamp ghost = lampInPhase(phase);
           ghost.amplitude *= share;
           ghost.centre += apart * radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
           SCOPED_TRACE(testing::Message() << "share " << share << ", " << apart << " radii towards " << angle
                                           << ", phase " << phase);
-          const vpLampPicture picture = pictureOf({lamp(phase), ghost}, 190, 190);
+          const vpLampPicture picture = pictureOf({lampInPhase(phase), ghost}, 190, 190);
           expectTheLamp(outlineOf(picture), picture.lamps[0], share > 0.25);
         }
 }
@@ -69,14 +69,14 @@ TEST(GhostImages, RimThatALampLightsIsNoPartOfIt)
 {
   for (const double share : {0.05, 0.1, 0.2})
     for (const double aside : {0.0, 0.1, 0.17}) // radii
-      for (const double phase : phases) {
-        vpPaintedLamp rim = lamp(phase);
+      for (const double phase : ghostPhases) {
+        vpPaintedLamp rim = lampInPhase(phase);
         rim.a = rim.b = 1.2 * radius;
         rim.amplitude *= share;
         rim.centre.x() += aside * radius;
         SCOPED_TRACE(testing::Message()
                      << "share " << share << ", " << aside << " radii aside, phase " << phase);
-        const vpLampPicture picture = pictureOf({lamp(phase), rim}, 190, 190);
+        const vpLampPicture picture = pictureOf({lampInPhase(phase), rim}, 190, 190);
         expectTheLamp(outlineOf(picture), picture.lamps[0], false);
       }
 }

@@ -18,7 +18,7 @@ namespace
 const double stated = 40e-6, twice = 0.69; // s; standard deviation of the logarithm: a factor of two
 
 //! A lamp whose stripes show an exposure to a share of it.
-vpStripeFeatures lamp(double exposure, double share)
+vpStripeFeatures seenWith(double exposure, double share)
 {
   vpStripeFeatures seen;
   seen.signal = vpStripeFeatures::Signal::pwm;
@@ -55,7 +55,7 @@ TEST(ExposureEvidence, WithoutLampsIsWhatTheRigStates)
 // A reading as uncertain as the claim is the claim: however many of them there are, they add nothing.
 TEST(ExposureEvidence, WhatWasKnownBeforeCountsOnce)
 {
-  const vpExposureEvidence evidence = after(std::vector<vpStripeFeatures>(10, lamp(stated, twice)));
+  const vpExposureEvidence evidence = after(std::vector<vpStripeFeatures>(10, seenWith(stated, twice)));
   EXPECT_GT(evidence.logSigma(), 0.7 * twice);
   EXPECT_NEAR(std::log(evidence.exposure() / stated), 0, 0.3 * twice);
 }
@@ -63,7 +63,7 @@ TEST(ExposureEvidence, WhatWasKnownBeforeCountsOnce)
 TEST(ExposureEvidence, LampsThatAgreeTellIt)
 {
   const double shown = 2.5 * stated;
-  const vpExposureEvidence evidence = after(std::vector<vpStripeFeatures>(4, lamp(shown, 0.03)));
+  const vpExposureEvidence evidence = after(std::vector<vpStripeFeatures>(4, seenWith(shown, 0.03)));
   EXPECT_NEAR(std::log(evidence.exposure() / shown), 0, 3 * evidence.logSigma());
   EXPECT_LT(evidence.logSigma(), 0.1);
   EXPECT_TRUE(evidence.contradicts());
@@ -72,15 +72,16 @@ TEST(ExposureEvidence, LampsThatAgreeTellIt)
 // Tone curves and blur soften lamps differently: lamps that scatter say less than lamps that agree.
 TEST(ExposureEvidence, LampsThatScatterTellLess)
 {
-  const vpExposureEvidence agreeing = after(std::vector<vpStripeFeatures>(4, lamp(stated, 0.03))),
-                           scattered = after({lamp(0.8 * stated, 0.03), lamp(0.95 * stated, 0.03),
-                                              lamp(1.05 * stated, 0.03), lamp(1.25 * stated, 0.03)});
+  const vpExposureEvidence agreeing = after(std::vector<vpStripeFeatures>(4, seenWith(stated, 0.03))),
+                           scattered = after({seenWith(0.8 * stated, 0.03), seenWith(0.95 * stated, 0.03),
+                                              seenWith(1.05 * stated, 0.03), seenWith(1.25 * stated, 0.03)});
   EXPECT_GT(scattered.logSigma(), 1.5 * agreeing.logSigma());
 }
 
 TEST(ExposureEvidence, OneLampThatIsOffDoesNotMoveTheOthers)
 {
-  const vpExposureEvidence evidence = after({lamp(stated, 0.03), lamp(stated, 0.03), lamp(stated, 0.03),
-                                             lamp(stated, 0.03), lamp(3 * stated, 0.03)});
+  const vpExposureEvidence evidence =
+      after({seenWith(stated, 0.03), seenWith(stated, 0.03), seenWith(stated, 0.03), seenWith(stated, 0.03),
+             seenWith(3 * stated, 0.03)});
   EXPECT_NEAR(std::log(evidence.exposure() / stated), 0, 0.15);
 }

@@ -19,7 +19,7 @@ using namespace VISP_NAMESPACE_NAME;
 
 namespace
 {
-const double rowTime = 43.1e-6; // s
+const double profileRowTime = 43.1e-6; // s
 
 vpVlpRig rigOf(unsigned int width, unsigned int height, vpRollingShutter::Readout readout)
 {
@@ -27,7 +27,7 @@ vpVlpRig rigOf(unsigned int width, unsigned int height, vpRollingShutter::Readou
   rig.width = width;
   rig.height = height;
   rig.camera.initPersProjWithoutDistortion(600, 600, 0.5 * width, 0.5 * height);
-  rig.shutter.rowTime = rig.shutter.exposure = rowTime;
+  rig.shutter.rowTime = rig.shutter.exposure = profileRowTime;
   rig.shutter.rowTimeSigma = 2e-9;
   rig.shutter.exposureSigma = 0.4e-6;
   rig.shutter.readout = readout;

@@ -22,12 +22,12 @@ using namespace VISP_NAMESPACE_NAME;
 namespace
 {
 
-vpLampMap map()
+vpLampMap fourLampMap()
 {
   return vpPwmLamps({2000, 2600, 3500});
 }
 
-vpPaintedLamp lamp(double u, double v, double frequency, double duty = 0.5)
+vpPaintedLamp lampAt(double u, double v, double frequency, double duty = 0.5)
 {
   vpPaintedLamp lamp;
   lamp.centre = {u, v};
@@ -38,15 +38,15 @@ vpPaintedLamp lamp(double u, double v, double frequency, double duty = 0.5)
   return lamp;
 }
 
-vpLampPicture picture()
+vpLampPicture fourLampPicture()
 {
   vpLampPicture picture;
   picture.width = 400;
   picture.height = 320;
   picture.rowTime = picture.exposure = 40e-6;
   picture.blur = 0.7;
-  picture.lamps = {lamp(80.3, 70.6, 2000), lamp(300.7, 90.2, 2600), lamp(120.4, 240.8, 3500),
-                   lamp(310, 250, 5000)};
+  picture.lamps = {lampAt(80.3, 70.6, 2000), lampAt(300.7, 90.2, 2600), lampAt(120.4, 240.8, 3500),
+                   lampAt(310, 250, 5000)};
   return picture;
 }
 
@@ -62,8 +62,8 @@ const vpLampObservation *find(const vpLedDetector &detector, const std::string &
 
 TEST(LedDetector, NamesKnownLampsAndReportsAnUnknownOne)
 {
-  vpLedDetector detector(vpUpwardRig(400, 320), map());
-  ASSERT_TRUE(detector.detect(picture().render()));
+  vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
+  ASSERT_TRUE(detector.detect(fourLampPicture().render()));
   EXPECT_EQ(detector.getNbObjects(), 4u);
   ASSERT_EQ(detector.observations().size(), 4u);
   for (const char *id : {"L2000", "L2600", "L3500"}) {
@@ -82,8 +82,8 @@ TEST(LedDetector, NamesKnownLampsAndReportsAnUnknownOne)
 
 TEST(LedDetector, MessagesAndPolygonsAsEveryVispDetector)
 {
-  vpLedDetector detector(vpUpwardRig(400, 320), map());
-  detector.detect(picture().render());
+  vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
+  detector.detect(fourLampPicture().render());
   vpDetectorBase &base = detector;
   for (size_t i = 0; i < base.getNbObjects(); ++i) {
     EXPECT_EQ(base.getMessage(i), detector.observations()[i].id);
@@ -96,11 +96,11 @@ TEST(LedDetector, MessagesAndPolygonsAsEveryVispDetector)
 
 TEST(LedDetector, ColumnsSeeTheSameLampsAsRows)
 {
-  vpLampPicture painted = picture();
+  vpLampPicture painted = fourLampPicture();
   painted.columns = true;
   vpVlpRig columns = vpUpwardRig(400, 320);
   columns.shutter.readout = vpRollingShutter::Readout::columns;
-  vpLedDetector detector(columns, map());
+  vpLedDetector detector(columns, fourLampMap());
   ASSERT_TRUE(detector.detect(painted.render()));
   for (const vpPaintedLamp &lamp : painted.lamps) {
     const bool known = lamp.frequency < 4000;
@@ -121,7 +121,7 @@ TEST(LedDetector, NearestNeighbourResizeKeepsTheFrequencyNearHalfTheSamplingRate
   sensor.rowTime = 45e-6;
   sensor.exposure = 60e-6;
   sensor.blur = 1;
-  sensor.lamps = {lamp(256.2, 255.7, 3500)};
+  sensor.lamps = {lampAt(256.2, 255.7, 3500)};
   sensor.lamps[0].a = sensor.lamps[0].b = 150;
   const vpImage<unsigned char> full = sensor.render();
   vpImage<unsigned char> delivered(200, 200);
@@ -135,7 +135,7 @@ TEST(LedDetector, NearestNeighbourResizeKeepsTheFrequencyNearHalfTheSamplingRate
   resized.shutter.exposure = 60e-6;
   resized.resize.method = vpPictureResize::Method::nearest;
   resized.resize.sourceWidth = resized.resize.sourceHeight = 512;
-  vpLedDetector detector(resized, map());
+  vpLedDetector detector(resized, fourLampMap());
   ASSERT_TRUE(detector.detect(delivered));
   ASSERT_EQ(detector.observations().size(), 1u);
   EXPECT_EQ(detector.observations()[0].id, "L3500");
@@ -144,9 +144,9 @@ TEST(LedDetector, NearestNeighbourResizeKeepsTheFrequencyNearHalfTheSamplingRate
 
 TEST(LedDetector, LampCutByTheBorderIsFlagged)
 {
-  vpLampPicture painted = picture();
-  painted.lamps = {lamp(8, 150, 2000)};
-  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  vpLampPicture painted = fourLampPicture();
+  painted.lamps = {lampAt(8, 150, 2000)};
+  vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
   ASSERT_TRUE(detector.detect(painted.render()));
   ASSERT_EQ(detector.observations().size(), 1u);
   EXPECT_TRUE(detector.observations()[0].cut);
@@ -155,14 +155,14 @@ TEST(LedDetector, LampCutByTheBorderIsFlagged)
 
 TEST(LedDetector, UnmodulatedLampAndWindowAreNoLampsOfTheMap)
 {
-  vpLampPicture painted = picture();
-  vpPaintedLamp window = lamp(300, 240, 0);
+  vpLampPicture painted = fourLampPicture();
+  vpPaintedLamp window = lampAt(300, 240, 0);
   window.rectangle(120, 90);
   window.pulses = {{0, 1}};
-  vpPaintedLamp steady = lamp(80, 80, 0);
+  vpPaintedLamp steady = lampAt(80, 80, 0);
   steady.pulses = {{0, 1}};
   painted.lamps = {window, steady};
-  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
   ASSERT_TRUE(detector.detect(painted.render()));
   EXPECT_EQ(detector.observations().size(), 2u);
   for (const vpLampObservation &seen : detector.observations()) {
@@ -174,8 +174,8 @@ TEST(LedDetector, UnmodulatedLampAndWindowAreNoLampsOfTheMap)
 // At a first look what shines steadily is told from what blinks, whatever its shape; lamps are found as ever.
 TEST(LedDetector, SteadyLightNeedsNoOutline)
 {
-  vpLampPicture made = picture();
-  vpPaintedLamp bulb = lamp(200.4, 150.2, 0), panel = lamp(205.1, 60.3, 0), tube = lamp(210, 290, 0);
+  vpLampPicture made = fourLampPicture();
+  vpPaintedLamp bulb = lampAt(200.4, 150.2, 0), panel = lampAt(205.1, 60.3, 0), tube = lampAt(210, 290, 0);
   panel.angle = 0.2;
   panel.rectangle(60, 45);
   tube.rectangle(90, 14);
@@ -184,7 +184,7 @@ TEST(LedDetector, SteadyLightNeedsNoOutline)
     made.lamps.push_back(*steady);
   }
   const vpImage<unsigned char> I = made.render();
-  vpLedDetector with(vpUpwardRig(400, 320), map()), without(vpUpwardRig(400, 320), map());
+  vpLedDetector with(vpUpwardRig(400, 320), fourLampMap()), without(vpUpwardRig(400, 320), fourLampMap());
   without.skipSteady = true;
   ASSERT_TRUE(with.detect(I));
   ASSERT_TRUE(without.detect(I));
@@ -234,11 +234,11 @@ TEST(LedDetector, LongestPeriodIsKnownWhereEachLampShowsItsDark)
 TEST(LedDetector, FaintStripesAreNoSteadyLight)
 {
   for (const double amplitude : {60.0, 150.0}) {
-    vpLampPicture made = picture();
+    vpLampPicture made = fourLampPicture();
     made.exposure = 0.85 / 2000;
-    made.lamps = {lamp(80.3, 70.6, 2000)};
+    made.lamps = {lampAt(80.3, 70.6, 2000)};
     made.lamps[0].amplitude = amplitude;
-    vpLedDetector detector(vpUpwardRig(400, 320), map());
+    vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
     detector.skipSteady = true;
     ASSERT_TRUE(detector.detect(made.render()));
     ASSERT_EQ(detector.observations().size(), 1u);
@@ -248,11 +248,11 @@ TEST(LedDetector, FaintStripesAreNoSteadyLight)
 
 TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
 {
-  vpLampPicture painted = picture();
+  vpLampPicture painted = fourLampPicture();
   for (vpPaintedLamp &lamp : painted.lamps) {
     lamp.amplitude = 900; // lit lines clip at 255
   }
-  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
   ASSERT_TRUE(detector.detect(painted.render()));
   const vpLampObservation *seen = find(detector, "L2000");
   ASSERT_NE(seen, nullptr);
@@ -266,13 +266,13 @@ TEST(LedDetector, ClippedStripesAreAsUncertainAsTheyAre)
   double frequency = 0, duty = 0, most = 0; // squares of normalised errors
   int count = 0;
   for (int phase = 0; phase < 40; ++phase) {
-    vpLampPicture painted = picture();
+    vpLampPicture painted = fourLampPicture();
     painted.exposure = 100e-6;
     painted.lamps.resize(1);
     painted.lamps[0].frequency = 2000 + 61.7 * phase;
     painted.lamps[0].phase = phase / 40.0;
     painted.lamps[0].amplitude = 700;
-    vpLedDetector detector(vpUpwardRig(400, 320), map());
+    vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
     detector.detect(painted.render());
     if (detector.observations().size() != 1 || !(detector.observations()[0].saturated > 0.4) ||
         !std::isfinite(detector.observations()[0].features.frequency)) {
@@ -297,7 +297,7 @@ TEST(LedDetector, NoiseThatBlackClipsLeavesDutiesAsTheyAre)
   double squares = 0, sum = 0; // of normalised errors
   int count = 0;
   for (int phase = 0; phase < 40; ++phase) {
-    vpLampPicture painted = picture();
+    vpLampPicture painted = fourLampPicture();
     painted.background = 3;
     painted.noise = 25;
     painted.seed = static_cast<unsigned int>(phase + 1);
@@ -307,7 +307,7 @@ TEST(LedDetector, NoiseThatBlackClipsLeavesDutiesAsTheyAre)
     painted.lamps[0].frequency = 5000 + 31.7 * phase;
     painted.lamps[0].phase = phase / 40.0;
     painted.lamps[0].pwm(0.3);
-    vpLedDetector detector(vpUpwardRig(400, 320), map());
+    vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
     detector.detect(painted.render());
     ASSERT_FALSE(detector.observations().empty());
     const vpStripeFeatures &seen = detector.observations()[0].features;
@@ -324,14 +324,14 @@ TEST(LedDetector, NoiseThatBlackClipsLeavesDutiesAsTheyAre)
 //! Two periods of two pulses have the edges of four: more than enough for a frequency.
 TEST(LedDetector, TwoPeriodsOfTwoPulsesTellTheirFrequency)
 {
-  vpLampMap two = map();
+  vpLampMap two = fourLampMap();
   two.lamps[0].modulation.kind = vpModulation::Kind::twoPulse;
   two.lamps[0].modulation.frequency = 330;
   two.lamps[0].modulation.duty = 0.25;
   two.lamps[0].modulation.phaseDifference = 0.34;
   two.lamps.resize(1);
   for (int phase = 0; phase < 20; ++phase) {
-    vpLampPicture painted = picture();
+    vpLampPicture painted = fourLampPicture();
     painted.lamps.resize(1);
     painted.lamps[0].centre = {200.3, 160.6};
     painted.lamps[0].a = painted.lamps[0].b = 75;
@@ -352,16 +352,16 @@ TEST(LedDetector, NoiseMakesNoFrequencyThatIsNone)
 {
   int told = 0;
   for (unsigned int seed = 1; seed <= 60; ++seed) {
-    vpLampPicture noisy = picture();
+    vpLampPicture noisy = fourLampPicture();
     noisy.width = noisy.height = 200;
     noisy.noise = 40;
     noisy.seed = seed;
     const double frequency = 2.07 / (146 * noisy.rowTime);
-    vpPaintedLamp two = lamp(99.5, 99.5, frequency, 0.2);
+    vpPaintedLamp two = lampAt(99.5, 99.5, frequency, 0.2);
     two.a = two.b = 73;
     two.phase = 0.0167 * seed;
     noisy.lamps = {two};
-    vpLedDetector detector(vpUpwardRig(200, 200), map());
+    vpLedDetector detector(vpUpwardRig(200, 200), fourLampMap());
     detector.detect(noisy.render());
     for (const vpLampObservation &seen : detector.observations()) {
       if (seen.features.signal == vpStripeFeatures::Signal::pwm &&
@@ -376,13 +376,13 @@ TEST(LedDetector, NoiseMakesNoFrequencyThatIsNone)
 
 TEST(LedDetector, LampsThatPassEachOtherAreSeenOnce)
 {
-  vpLampPicture passing = picture();
+  vpLampPicture passing = fourLampPicture();
   int named = 0;
   for (int step = 0; step < 120; ++step) {
-    passing.lamps = {lamp(180, 150, 2000), lamp(222 + 0.2 * step, 120 + 0.5 * step, 2600)};
+    passing.lamps = {lampAt(180, 150, 2000), lampAt(222 + 0.2 * step, 120 + 0.5 * step, 2600)};
     passing.lamps[0].phase = 0.083 * step;
     passing.lamps[1].phase = 0.047 * step;
-    vpLedDetector detector(vpUpwardRig(passing.width, passing.height), map());
+    vpLedDetector detector(vpUpwardRig(passing.width, passing.height), fourLampMap());
     detector.detect(passing.render());
     std::vector<std::string> ids;
     for (const vpLampObservation &seen : detector.observations()) {
@@ -399,17 +399,17 @@ TEST(LedDetector, LampsThatPassEachOtherAreSeenOnce)
 
 TEST(LedDetector, RefusesAPictureOfAnotherSize)
 {
-  vpLedDetector detector(vpUpwardRig(400, 320), map());
+  vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
   const vpImage<unsigned char> I(320, 402);
   vpExpectError([&] { detector.detect(I); }, {"402 x 320", "400 x 320"});
-  vpExpectError([&] { vpLedDetector(vpUpwardRig(0, 0), map()); }, {"size"});
+  vpExpectError([&] { vpLedDetector(vpUpwardRig(0, 0), fourLampMap()); }, {"size"});
 }
 
 TEST(LedDetector, DarkWhiteAndTinyPicturesHoldNoKnownLamp)
 {
   for (const auto &[width, height] : {std::pair{400u, 320u}, {1u, 1u}, {400u, 1u}, {1u, 320u}}) {
     for (unsigned char grey : {0, 128, 255}) {
-      vpLedDetector detector(vpUpwardRig(width, height), map());
+      vpLedDetector detector(vpUpwardRig(width, height), fourLampMap());
       detector.detect(vpImage<unsigned char>(height, width, grey));
       for (const vpLampObservation &seen : detector.observations()) {
         EXPECT_TRUE(seen.id.empty()) << width << " x " << height << ", grey " << static_cast<int>(grey);

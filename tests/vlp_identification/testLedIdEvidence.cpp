@@ -20,7 +20,7 @@ namespace
 {
 using Signal = vpStripeFeatures::Signal;
 
-vpStripeFeatures stripes(double frequency, double sigma, double duty = 0.5, double dutySigma = 0.01)
+vpStripeFeatures frameWith(double frequency, double sigma, double duty = 0.5, double dutySigma = 0.01)
 {
   vpStripeFeatures seen;
   seen.signal = Signal::pwm;
@@ -59,7 +59,7 @@ TEST(LedIdEvidence, ThreeFramesDecideWhatOneLeavesOpen)
   for (int track = 0; track < tracks; ++track) {
     vpLedIdEvidence evidence;
     for (int frame = 1; frame <= 3; ++frame) {
-      evidence.add(stripes(2000 + noise(generator), sigma));
+      evidence.add(frameWith(2000 + noise(generator), sigma));
       vpLampObservation seen;
       seen.features = evidence.features();
       recognizer.recognize(seen);
@@ -79,8 +79,8 @@ TEST(LedIdEvidence, ThreeFramesDecideWhatOneLeavesOpen)
 TEST(LedIdEvidence, MeanAndSigmaAreThoseOfAllFrames)
 {
   vpLedIdEvidence evidence;
-  EXPECT_TRUE(evidence.add(stripes(1000, 1, 0.5, 0.02)));
-  EXPECT_TRUE(evidence.add(stripes(1003, 2, 0.52, 0.01)));
+  EXPECT_TRUE(evidence.add(frameWith(1000, 1, 0.5, 0.02)));
+  EXPECT_TRUE(evidence.add(frameWith(1003, 2, 0.52, 0.01)));
   EXPECT_EQ(evidence.frames(), 2u);
   EXPECT_NEAR(evidence.features().frequency, (4 * 1000 + 1003) / 5., 1e-9);
   EXPECT_NEAR(evidence.features().frequencySigma, std::sqrt(1 / (1 + 0.25)), 1e-12);
@@ -98,11 +98,12 @@ TEST(LedIdEvidence, WhatFramesHideAlikeDoesNotAverageOut)
     const double common = hidden * normal(generator);
     vpLedIdEvidence same, each;
     for (int frame = 0; frame < 30; ++frame) {
-      vpStripeFeatures seen = stripes(truth + common + noise * normal(generator), std::hypot(noise, hidden));
+      vpStripeFeatures seen =
+          frameWith(truth + common + noise * normal(generator), std::hypot(noise, hidden));
       seen.frequencyNoise = noise;
       seen.frequencyBound = seen.frequencySigma;
       same.add(seen);
-      seen = stripes(truth + noise * normal(generator), noise);
+      seen = frameWith(truth + noise * normal(generator), noise);
       seen.frequencyNoise = noise;
       each.add(seen);
     }
@@ -120,13 +121,13 @@ TEST(LedIdEvidence, WhatFramesHideAlikeDoesNotAverageOut)
 TEST(LedIdEvidence, AnotherLampBeginsAnew)
 {
   vpLedIdEvidence evidence;
-  evidence.add(stripes(1000, 1));
-  evidence.add(stripes(1001, 1));
-  EXPECT_FALSE(evidence.add(stripes(1050, 1)));
+  evidence.add(frameWith(1000, 1));
+  evidence.add(frameWith(1001, 1));
+  EXPECT_FALSE(evidence.add(frameWith(1050, 1)));
   EXPECT_EQ(evidence.frames(), 1u);
   EXPECT_EQ(evidence.features().frequency, 1050);
-  EXPECT_FALSE(evidence.add(stripes(1050, 1, 0.3)));
-  vpStripeFeatures two = stripes(1050, 1, 0.3);
+  EXPECT_FALSE(evidence.add(frameWith(1050, 1, 0.3)));
+  vpStripeFeatures two = frameWith(1050, 1, 0.3);
   two.signal = Signal::twoPulse;
   two.phaseDifference = 0.3;
   two.phaseDifferenceSigma = 0.01;
@@ -138,7 +139,7 @@ TEST(LedIdEvidence, TwoFramesTellADutyThatEachHides)
 {
   // Each frame knows the frequency if it knows the duty, and the two agree about one duty only.
   auto frame = [](double slope) {
-    vpStripeFeatures seen = stripes(5807 + 0.1 * slope, 0.3 * std::abs(slope), 0.3, 0.15);
+    vpStripeFeatures seen = frameWith(5807 + 0.1 * slope, 0.3 * std::abs(slope), 0.3, 0.15);
     for (double duty = 0.1; duty < 0.55; duty += 0.05) {
       seen.alongDuty.push_back({duty, 5807 + slope * (duty - 0.2), 0.5, 0});
     }
@@ -152,7 +153,7 @@ TEST(LedIdEvidence, TwoFramesTellADutyThatEachHides)
   EXPECT_LT(evidence.features().frequencySigma, 0.8);
   EXPECT_NEAR(evidence.features().duty, 0.2, 0.02);
   // A third one that knows the duty leaves no other open.
-  EXPECT_TRUE(evidence.add(stripes(5807, 0.5, 0.2, 0.005)));
+  EXPECT_TRUE(evidence.add(frameWith(5807, 0.5, 0.2, 0.005)));
   EXPECT_TRUE(evidence.features().alongDuty.empty());
   EXPECT_NEAR(evidence.features().frequency, 5807, 0.5);
 }
@@ -162,12 +163,12 @@ TEST(LedIdEvidence, FramesThatSayNothingChangeNothing)
   vpLedIdEvidence evidence;
   EXPECT_TRUE(evidence.add({}));
   EXPECT_EQ(evidence.frames(), 0u);
-  evidence.add(stripes(1000, 1));
+  evidence.add(frameWith(1000, 1));
   vpStripeFeatures whole;
   whole.signal = Signal::coded; // a word not seen whole
   EXPECT_TRUE(evidence.add(whole));
   EXPECT_TRUE(evidence.add({}));
-  EXPECT_TRUE(evidence.add(stripes(300, 400)));
+  EXPECT_TRUE(evidence.add(frameWith(300, 400)));
   EXPECT_EQ(evidence.frames(), 1u);
   EXPECT_EQ(evidence.features().frequency, 1000);
 }

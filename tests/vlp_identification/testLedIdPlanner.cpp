@@ -18,7 +18,7 @@ using namespace plannedLamps;
 namespace
 {
 //! Share of an exposure from \e start on that falls into pulses.
-double lit(const vpModulation &lamp, double phase, double start, double exposure)
+double sentShare(const vpModulation &lamp, double phase, double start, double exposure)
 {
   const auto integral = [&lamp](double x) {
     return std::floor(x) * *lamp.duty + std::min(x - std::floor(x), *lamp.duty);
@@ -234,7 +234,7 @@ TEST(LedIdPlannerStatistics, AnalyserAndRecogniserTellTheLampsApart)
       for (unsigned int i = first; i < first + static_cast<unsigned int>(lines); ++i) {
         const double start = slower * timing.middle(i) - profile.exposure / 2;
         profile.time.push_back(timing.middle(i));
-        profile.light.push_back(2 * amplitude * lit(sent, phase, start, profile.exposure) +
+        profile.light.push_back(2 * amplitude * sentShare(sent, phase, start, profile.exposure) +
                                 noise * normal(generator));
         profile.sigma.push_back(noise);
       }

@@ -22,8 +22,8 @@ using namespace VISP_NAMESPACE_NAME;
 
 namespace
 {
-const int width = 420, height = 320; // px
-const double rowTime = 40e-6;        // s
+const int columns = 420, lines = 320;  // px
+const double luminaireRowTime = 40e-6; // s
 
 using Pattern = std::function<double(double u, double v)>; // grey levels, px from the lamp's middle
 
@@ -39,7 +39,7 @@ double litShare(const Luminaire &lamp, int line)
   static const int moments = 64;
   int lit = 0;
   for (int k = 0; k < moments; ++k) {
-    const double turns = lamp.frequency * rowTime * (line + (k + 0.5) / moments) + lamp.phase;
+    const double turns = lamp.frequency * luminaireRowTime * (line + (k + 0.5) / moments) + lamp.phase;
     lit += turns - std::floor(turns) < lamp.duty ? 1 : 0;
   }
   return static_cast<double>(lit) / moments;
@@ -47,12 +47,12 @@ double litShare(const Luminaire &lamp, int line)
 
 vpImage<unsigned char> pictureOf(const std::vector<Luminaire> &lamps, double noise = 1)
 {
-  cv::Mat_<double> grey(height, width, 6.0);
+  cv::Mat_<double> grey(lines, columns, 6.0);
   for (const Luminaire &lamp : lamps) {
-    cv::Mat_<double> light(height, width, 0.0);
+    cv::Mat_<double> light(lines, columns, 0.0);
     static const int cells = 4; // of a pixel, along each side
-    for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) {
+    for (int v = 0; v < lines; ++v) {
+      for (int u = 0; u < columns; ++u) {
         for (int cell = 0; cell < cells * cells; ++cell) {
           const double du = (cell % cells + 0.5) / cells - 0.5, dv = (cell / cells + 0.5) / cells - 0.5;
           light(v, u) += lamp.light(u + du - lamp.middle.x(), v + dv - lamp.middle.y()) / (cells * cells);
@@ -60,29 +60,29 @@ vpImage<unsigned char> pictureOf(const std::vector<Luminaire> &lamps, double noi
       }
     }
     cv::GaussianBlur(light, light, cv::Size(0, 0), 0.8);
-    for (int v = 0; v < height; ++v) {
+    for (int v = 0; v < lines; ++v) {
       grey.row(v) += litShare(lamp, v) * light.row(v);
     }
   }
   std::mt19937 generator(5);
   std::normal_distribution<double> normal(0, noise);
-  vpImage<unsigned char> I(height, width);
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width; ++u) {
+  vpImage<unsigned char> I(lines, columns);
+  for (int v = 0; v < lines; ++v) {
+    for (int u = 0; u < columns; ++u) {
       I[v][u] = cv::saturate_cast<unsigned char>(grey(v, u) + normal(generator));
     }
   }
   return I;
 }
 
-vpLampMap map()
+vpLampMap luminaireMap()
 {
   return vpPwmLamps({1500, 2000, 2600});
 }
 
 std::vector<vpLampObservation> seenIn(const std::vector<Luminaire> &lamps)
 {
-  vpLedDetector detector(vpUpwardRig(width, height), map());
+  vpLedDetector detector(vpUpwardRig(columns, lines), luminaireMap());
   detector.detect(pictureOf(lamps));
   return detector.observations();
 }

@@ -24,7 +24,7 @@ namespace
 {
 const double radius = 36; // px
 
-vpPaintedLamp lamp(double u = 120.3, double v = 110.6)
+vpPaintedLamp smallLamp(double u = 120.3, double v = 110.6)
 {
   vpPaintedLamp lamp;
   lamp.centre = {u, v};
@@ -54,7 +54,7 @@ class Reacquisition : public testing::Test
 protected:
   void SetUp() override
   {
-    ASSERT_TRUE(detector.detect(picture({lamp()}).render()));
+    ASSERT_TRUE(detector.detect(picture({smallLamp()}).render()));
     ASSERT_EQ(detector.observations().size(), 1u);
     before = detector.observations().front();
   }
@@ -76,7 +76,7 @@ protected:
 TEST_F(Reacquisition, SeesWhatTheDetectorSees)
 {
   for (unsigned int seed = 1; seed < 20; ++seed) {
-    vpPaintedLamp moved = lamp(120.3 + 2.3 * seed, 110.6 - 0.7 * seed);
+    vpPaintedLamp moved = smallLamp(120.3 + 2.3 * seed, 110.6 - 0.7 * seed);
     moved.phase = 0.17 * seed;
     const vpImage<unsigned char> I = picture({moved}, seed).render();
     const double angle = seed; // rad, any
@@ -97,7 +97,7 @@ TEST_F(Reacquisition, FindsItsWayFromPixelsAway)
 {
   for (const double frequency : {1042., 2000., 5200.}) {
     for (unsigned int seed = 1; seed < 12; ++seed) {
-      vpPaintedLamp moved = lamp();
+      vpPaintedLamp moved = smallLamp();
       moved.frequency = frequency;
       moved.phase = 0.09 * seed;
       moved.pwm(seed % 2 == 0 ? 0.5 : 0.25);
@@ -122,7 +122,7 @@ TEST_F(Reacquisition, ErrorsAreAsLargeAsTheySay)
   double squares = 0;
   static const int trials = 100;
   for (unsigned int seed = 1; seed <= trials; ++seed) {
-    vpPaintedLamp moved = lamp(100 + 0.37 * seed, 100 + 0.23 * seed);
+    vpPaintedLamp moved = smallLamp(100 + 0.37 * seed, 100 + 0.23 * seed);
     moved.phase = 0.11 * seed;
     ASSERT_TRUE(finds(picture({moved}, seed).render(), moved.centre + Eigen::Vector2d(0.4, -0.3)));
     const Eigen::Vector2d error = now.outline.centre - moved.centre;
@@ -136,22 +136,22 @@ TEST_F(Reacquisition, ErrorsAreAsLargeAsTheySay)
 
 TEST_F(Reacquisition, TakesNoOtherLampForIt)
 {
-  vpPaintedLamp other = lamp();
+  vpPaintedLamp other = smallLamp();
   other.frequency = 2000 + 40; // an eighth of a period over the lamp
   EXPECT_FALSE(finds(other));
-  other = lamp();
+  other = smallLamp();
   other.frequency = 3500;
   EXPECT_FALSE(finds(other));
-  other = lamp();
+  other = smallLamp();
   other.pwm(0.6);
   EXPECT_FALSE(finds(other));
-  other = lamp();
+  other = smallLamp();
   other.twoPulse(0.5, 0.3);
   EXPECT_FALSE(finds(other));
-  other = lamp();
+  other = smallLamp();
   other.frequency = 0; // steady
   EXPECT_FALSE(finds(other));
-  other = lamp();
+  other = smallLamp();
   other.a = other.b = 1.1 * radius;
   EXPECT_FALSE(finds(other));
 }
@@ -159,27 +159,27 @@ TEST_F(Reacquisition, TakesNoOtherLampForIt)
 TEST_F(Reacquisition, SeesNothingWhereThereIsNothing)
 {
   EXPECT_FALSE(finds(picture({}, 3).render(), before.outline.centre));
-  EXPECT_FALSE(finds(picture({lamp(240, 150)}).render(), before.outline.centre));
+  EXPECT_FALSE(finds(picture({smallLamp(240, 150)}).render(), before.outline.centre));
 }
 
 TEST_F(Reacquisition, LeavesPartsOfALampToTheDetector)
 {
   // Somebody's head: dark, across a third of the lamp.
-  vpImage<unsigned char> I = picture({lamp()}).render();
+  vpImage<unsigned char> I = picture({smallLamp()}).render();
   for (unsigned int v = 60; v < 160; ++v) {
     for (unsigned int u = 84; u < 108; ++u) {
       I[v][u] = 10;
     }
   }
   EXPECT_FALSE(finds(I, before.outline.centre));
-  EXPECT_FALSE(finds(lamp(radius - 2, 110)));
-  EXPECT_FALSE(finds(lamp(120, 239 - radius)));
+  EXPECT_FALSE(finds(smallLamp(radius - 2, 110)));
+  EXPECT_FALSE(finds(smallLamp(120, 239 - radius)));
 }
 
 TEST_F(Reacquisition, LampsThatLeaveThePictureAreNotFollowedOutOfIt)
 {
   for (double v = 239 - 1.3 * radius; v < 250; v += 1) {
-    const vpImage<unsigned char> I = picture({lamp(120, v)}).render();
+    const vpImage<unsigned char> I = picture({smallLamp(120, v)}).render();
     for (double expected = v - 15; expected < v; expected += 5) {
       EXPECT_FALSE(finds(I, {120, expected}) && v > 239 - radius - 4) << v << " expected at " << expected;
     }
@@ -193,11 +193,11 @@ TEST_F(Reacquisition, TakesOnlyWhatWasUnderstood)
       [this] { before.cut = true; }, [this] { before.outline.shape = vpLampOutline::Shape::region; },
       [this] { before.features.signal = vpStripeFeatures::Signal::coded; }, [this] { before.blur = 0; },
       [this] { before.features.frequencySigma = 100; }};
-  EXPECT_TRUE(finds(lamp()));
+  EXPECT_TRUE(finds(smallLamp()));
   for (size_t i = 0; i < spoilers.size(); ++i) {
     before = understood;
     spoilers[i]();
-    EXPECT_FALSE(finds(lamp())) << i;
+    EXPECT_FALSE(finds(smallLamp())) << i;
   }
 }
 

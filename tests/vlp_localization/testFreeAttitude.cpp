@@ -84,7 +84,7 @@ double tiltBetween(const vpHomogeneousMatrix &one, const vpHomogeneousMatrix &ot
 }
 
 // Mean NEES and chi-square of the unambiguous fixes of five lamps.
-void expectConsistent(unsigned int seed, const Sigmas &sigmas, int degreesOfFreedom, double lean)
+void expectFreeAttitudeConsistent(unsigned int seed, const Sigmas &sigmas, int degreesOfFreedom, double lean)
 {
   Random random(seed);
   ChiSquareMean error, chiSquare;
@@ -304,15 +304,15 @@ TEST(FreeAttitude, Refuses)
 
 TEST(FreeAttitude, SlowConsistentWithImagePoints)
 {
-  expectConsistent(41, {3e-4, 0, {0, 0, 0}, {0, 0, 0}}, 4, 0.2);
+  expectFreeAttitudeConsistent(41, {3e-4, 0, {0, 0, 0}, {0, 0, 0}}, 4, 0.2);
 }
 
 TEST(FreeAttitude, SlowConsistentWithMap)
 {
-  expectConsistent(42, {3e-4, 0.003, {0, 0, 0}, {0, 0, 0}}, 4, 0.2);
+  expectFreeAttitudeConsistent(42, {3e-4, 0.003, {0, 0, 0}, {0, 0, 0}}, 4, 0.2);
 }
 
 TEST(FreeAttitude, SlowConsistentWithWordOfTheRig)
 {
-  expectConsistent(44, {5e-4, 0.002, {0.002, 0.001, 0.003}, {0.004, 0.002, 0.003}}, 6, 0);
+  expectFreeAttitudeConsistent(44, {5e-4, 0.002, {0.002, 0.001, 0.003}, {0.004, 0.002, 0.003}}, 6, 0);
 }

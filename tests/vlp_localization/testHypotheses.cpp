@@ -132,17 +132,17 @@ Poses follow(const vpSeenLamps &claimed, const std::function<const vpSeenLamps &
   return poses;
 }
 
-const vpPlannedDrive drive({-0.2, 0, 0}, {{1, 0, 0}, {2, 0.1, 0.3}, {2, 0.15, -0.3}, {1, 0, 0}});
+const vpPlannedDrive plannedDrive({-0.2, 0, 0}, {{1, 0, 0}, {2, 0.1, 0.3}, {2, 0.15, -0.3}, {1, 0, 0}});
 
 vpPlannedPlace driven(double t)
 {
-  return drive.at(t);
+  return plannedDrive.at(t);
 }
 
 //! Put 12 cm and 40 degrees elsewhere after two seconds.
 vpPlannedPlace jumped(double t)
 {
-  vpPlannedPlace place = drive.at(t);
+  vpPlannedPlace place = plannedDrive.at(t);
   if (t > 2.05) {
     place.x += 0.1;
     place.y -= 0.07;
@@ -153,7 +153,7 @@ vpPlannedPlace jumped(double t)
 
 std::vector<vpOdometry> scaled(double scale)
 {
-  std::vector<vpOdometry> samples = drive.odometry(0.02);
+  std::vector<vpOdometry> samples = plannedDrive.odometry(0.02);
   for (vpOdometry &sample : samples) {
     sample.v *= scale;
     sample.w *= scale;
@@ -174,7 +174,7 @@ std::vector<std::pair<std::string, Poses>> drives(const Set &set)
     return [&world](double) -> const vpSeenLamps & { return world; };
   };
   const auto lampsGiveWay = [&](double t) -> const vpSeenLamps & { return t < 2 ? two : copies; };
-  const double duration = drive.duration();
+  const double duration = plannedDrive.duration();
   return {{"three lamps", follow(three, always(three), driven, duration, {}, set)},
           {"two lamps and wheels", follow(two, always(two), driven, duration, scaled(1), set)},
           {"two lamps and wheels that are off by a fifth",

@@ -31,7 +31,7 @@ std::vector<Eigen::Vector3d> randomLamps(Random &random, const vpHomogeneousMatr
 }
 
 // Mean NEES and mean chi-square over draws of a random robot under four random lamps.
-void expectConsistent(unsigned int seed, const Sigmas &sigmas, int rows, double height = 0)
+void expectManyLampsConsistent(unsigned int seed, const Sigmas &sigmas, int rows, double height = 0)
 {
   Random random(seed);
   ChiSquareMean error, chiSquare;
@@ -194,21 +194,21 @@ TEST(ManyLampSolver, Refuses)
 
 TEST(ManyLampSolver, ConsistentWithImagePoints)
 {
-  expectConsistent(31, {1e-3, 0, {0, 0, 0}, {0, 0, 0}}, 4, 2.2);
-  expectConsistent(32, {1e-3, 0, {0, 0, 0}, {0, 0, 0}}, 4);
+  expectManyLampsConsistent(31, {1e-3, 0, {0, 0, 0}, {0, 0, 0}}, 4, 2.2);
+  expectManyLampsConsistent(32, {1e-3, 0, {0, 0, 0}, {0, 0, 0}}, 4);
 }
 
 TEST(ManyLampSolver, ConsistentWithMap)
 {
-  expectConsistent(33, {5e-4, 0.005, {0, 0, 0}, {0, 0, 0}}, 4);
+  expectManyLampsConsistent(33, {5e-4, 0.005, {0, 0, 0}, {0, 0, 0}}, 4);
 }
 
 TEST(ManyLampSolver, ConsistentWithTiltOfTheMount)
 {
-  expectConsistent(34, {5e-4, 0, {0, 0, 0}, {0.002, 0.004, 0}}, 6);
+  expectManyLampsConsistent(34, {5e-4, 0, {0, 0, 0}, {0.002, 0.004, 0}}, 6);
 }
 
 TEST(ManyLampSolver, ConsistentWithAllSigmasAtOnce)
 {
-  expectConsistent(35, {5e-4, 0.003, {0.002, 0.004, 0.003}, {0.004, 0.003, 0.006}}, 6);
+  expectManyLampsConsistent(35, {5e-4, 0.003, {0.002, 0.004, 0.003}, {0.004, 0.003, 0.006}}, 6);
 }

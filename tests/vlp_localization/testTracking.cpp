@@ -25,7 +25,7 @@ using hungLamps::Path;
 using hungLamps::Place;
 
 //! Four lamps, and a robot that drives slowly below them.
-struct Room {
+struct TrackedRoom {
   hungLamps::Camera camera = {480, 400, 400};
   std::vector<Hung> lamps = hungLamps::rectangle(0.5, 0.4);
 
@@ -38,7 +38,7 @@ struct Room {
   }
 };
 
-const double frameTime = 1.0 / 20; // s
+const double framePeriod = 1.0 / 20; // s
 
 Place stand(double)
 {
@@ -74,11 +74,12 @@ testing::AssertionResult isAt(const vpVlpLocation &location, const Place &place,
 }
 
 //! Drives \e frames frames from \e first on; the last one's location.
-vpVlpLocation run(vpVlpLocalizer &localizer, const Room &room, const Path &path, double first, int frames)
+vpVlpLocation run(vpVlpLocalizer &localizer, const TrackedRoom &room, const Path &path, double first,
+                  int frames)
 {
   vpVlpLocation location;
   for (int k = 0; k < frames; ++k) {
-    location = localizer.process(room.frame(first + k * frameTime, path));
+    location = localizer.process(room.frame(first + k * framePeriod, path));
   }
   return location;
 }
@@ -86,10 +87,10 @@ vpVlpLocation run(vpVlpLocalizer &localizer, const Room &room, const Path &path,
 
 TEST(Tracking, CarriesThePoseWithinItsSigma)
 {
-  const Room room;
+  const TrackedRoom room;
   vpVlpLocalizer localizer = room.localizer();
   for (int k = 0; k < 40; ++k) {
-    const double t = 5 + k * frameTime;
+    const double t = 5 + k * framePeriod;
     const auto path = [](double time) { return drive(time - 5); };
     const vpVlpLocation location = localizer.process(room.frame(t, path));
     EXPECT_TRUE(isAt(location, path(t), 4)) << k;
@@ -106,7 +107,7 @@ TEST(Tracking, CarriesThePoseWithinItsSigma)
 // At 5 Hz a robot turns too far between two frames for a filter that knows nothing of its velocity yet.
 TEST(Tracking, SecondFrameOfASlowCameraIsAsGoodAsTheNext)
 {
-  const Room room;
+  const TrackedRoom room;
   const auto arc = [](double t) {
     return Place{0.25 * std::sin(0.4 * t), 0.25 * (1 - std::cos(0.4 * t)), 0.4 * t};
   };
@@ -125,7 +126,7 @@ TEST(Tracking, SecondFrameOfASlowCameraIsAsGoodAsTheNext)
 // Readout of 0.1 s, fine pixels: that lamps show no constant velocity is no fault of the map.
 TEST(Tracking, LongReadoutOfARobotThatAcceleratesDoesNotWidenTheClaims)
 {
-  Room room;
+  TrackedRoom room;
   room.camera = {2880, 2400, 2400};
   const auto circle = [](double t) {
     return Place{0.1 * std::cos(M_PI * t), 0.1 * std::sin(M_PI * t), 0.02}; // 1 m/s^2
@@ -146,14 +147,14 @@ TEST(Tracking, LongReadoutOfARobotThatAcceleratesDoesNotWidenTheClaims)
 // map and camera are not widened.
 TEST(Tracking, RobotThatStopsAndTurnsAtOnceIsFollowed)
 {
-  const Room room;
+  const TrackedRoom room;
   const auto path = [](double t) {
     const double driven = std::min(t, 1.0), turned = std::max(0.0, t - 1);
     return Place{-0.1 + 0.2 * driven, 0.05, 0.2 + 2 * std::min(turned, 0.5)};
   };
   vpVlpLocalizer localizer = room.localizer();
   for (int k = 0; k < 40; ++k) {
-    const double t = k * frameTime;
+    const double t = k * framePeriod;
     const vpVlpLocation location = localizer.process(room.frame(t, path));
     ASSERT_TRUE(location.fix.valid) << k << ": " << location.fix.refusal;
     EXPECT_LT(errorOf(location.fix, path(t)), 0.01) << k;
@@ -168,10 +169,10 @@ TEST(Tracking, RobotThatStopsAndTurnsAtOnceIsFollowed)
 
 TEST(Tracking, FrameThatIsNotLaterIsRefusedInOneLineAndTheNextGoesOn)
 {
-  const Room room;
+  const TrackedRoom room;
   vpVlpLocalizer localizer = room.localizer();
   run(localizer, room, stand, 10, 10);
-  const double last = 10 + 9 * frameTime;
+  const double last = 10 + 9 * framePeriod;
   for (const double time : {last, last - 0.03, last - 0.9}) {
     const vpVlpLocation location = localizer.process(room.frame(time, stand));
     EXPECT_FALSE(location.fix.valid);
@@ -180,7 +181,7 @@ TEST(Tracking, FrameThatIsNotLaterIsRefusedInOneLineAndTheNextGoesOn)
     EXPECT_TRUE(location.observations.empty());
     EXPECT_EQ(location.timestamp, time);
   }
-  const vpVlpLocation next = localizer.process(room.frame(last + frameTime, stand));
+  const vpVlpLocation next = localizer.process(room.frame(last + framePeriod, stand));
   EXPECT_TRUE(next.tracked);
   EXPECT_TRUE(isAt(next, stand(0), 4));
   EXPECT_EQ(next.state, State::tracking);
@@ -188,7 +189,7 @@ TEST(Tracking, FrameThatIsNotLaterIsRefusedInOneLineAndTheNextGoesOn)
 
 TEST(Tracking, TimeThatIsNoneIsRefusedAndTheNextGoesOn)
 {
-  const Room room;
+  const TrackedRoom room;
   vpVlpLocalizer localizer = room.localizer();
   for (int round = 0; round < 2; ++round) {
     for (const double time : {std::nan(""), std::numeric_limits<double>::infinity()}) {
@@ -206,38 +207,38 @@ TEST(Tracking, TimeThatIsNoneIsRefusedAndTheNextGoesOn)
 
 TEST(Tracking, ClockThatIsSetBackStartsAnew)
 {
-  const Room room;
+  const TrackedRoom room;
   vpVlpLocalizer localizer = room.localizer();
   run(localizer, room, stand, 1000, 6);
   const auto elsewhere = [](double) { return Place{-0.1, 0.1, -2}; }; // nothing of before is left
   const vpVlpLocation first = localizer.process(room.frame(3, elsewhere));
   EXPECT_FALSE(first.tracked);
   EXPECT_TRUE(isAt(first, elsewhere(0), 4));
-  const vpVlpLocation second = localizer.process(room.frame(3 + frameTime, elsewhere));
+  const vpVlpLocation second = localizer.process(room.frame(3 + framePeriod, elsewhere));
   EXPECT_TRUE(second.tracked);
   EXPECT_TRUE(isAt(second, elsewhere(0), 4));
 }
 
 TEST(Tracking, OdometryOfAClockThatIsSetBackIsHeard)
 {
-  const Room room;
+  const TrackedRoom room;
   vpVlpLocalizer localizer = room.localizer();
   for (const double start : {1000.0, 3.0}) {
     for (int k = 0; k < 12; ++k) {
-      const double t = start + k * frameTime;
+      const double t = start + k * framePeriod;
       localizer.filter.addOdometry({t + 0.03, 0, 0});
       localizer.process(room.frame(t, stand));
     }
     // It stands still, as the odometry says: at a speed of its own it would be much less certain.
-    localizer.filter.addOdometry({start + 12 * frameTime + 0.4, 0, 0});
-    const vpVlpFix later = localizer.filter.fixAt(start + 12 * frameTime + 0.4);
+    localizer.filter.addOdometry({start + 12 * framePeriod + 0.4, 0, 0});
+    const vpVlpFix later = localizer.filter.fixAt(start + 12 * framePeriod + 0.4);
     EXPECT_LT(std::sqrt(later.covariance(0, 0)), 0.01) << start;
   }
 }
 
 TEST(Tracking, GapOfSeveralSecondsStartsAnew)
 {
-  const Room room;
+  const TrackedRoom room;
   for (const double gap : {5.0, 60.0, 1e6}) {
     vpVlpLocalizer localizer = room.localizer();
     run(localizer, room, stand, 10, 6);
@@ -245,16 +246,16 @@ TEST(Tracking, GapOfSeveralSecondsStartsAnew)
     const vpVlpLocation first = localizer.process(room.frame(10 + gap, elsewhere));
     EXPECT_FALSE(first.tracked) << gap;
     EXPECT_TRUE(isAt(first, elsewhere(0), 4)) << gap;
-    EXPECT_TRUE(localizer.process(room.frame(10 + gap + frameTime, elsewhere)).tracked) << gap;
+    EXPECT_TRUE(localizer.process(room.frame(10 + gap + framePeriod, elsewhere)).tracked) << gap;
   }
 }
 
 TEST(Tracking, PictureOfAnotherSizeIsRefusedAndTheNextGoesOn)
 {
-  const Room room;
+  const TrackedRoom room;
   vpVlpLocalizer localizer = room.localizer();
   for (int k = 0; k < 12; ++k) {
-    const double t = k * frameTime;
+    const double t = k * framePeriod;
     if (k == 0 || k == 6) {
       vpVlpFrame other;
       other.I.resize(120, 160);
@@ -277,15 +278,15 @@ TEST(Tracking, PictureOfAnotherSizeIsRefusedAndTheNextGoesOn)
 // No frame in between is off by more than it says; refusals are honest.
 TEST(Tracking, RobotThatIsCarriedAwayIsFoundAgainWithinTwoFrames)
 {
-  const Room room;
+  const TrackedRoom room;
   for (const Place &there : {Place{-0.25, 0.15, 0.3}, Place{0.05, -0.03, 2.5}, Place{0.15, 0.1, -1.4}}) {
     SCOPED_TRACE(there.x);
     vpVlpLocalizer localizer = room.localizer();
     run(localizer, room, stand, 10, 10);
-    const double moved = 10 + 10 * frameTime;
+    const double moved = 10 + 10 * framePeriod;
     for (int k = 0; k < 8; ++k) {
       const vpVlpLocation location =
-          localizer.process(room.frame(moved + k * frameTime, [&](double) { return there; }));
+          localizer.process(room.frame(moved + k * framePeriod, [&](double) { return there; }));
       if (k >= 1) {
         EXPECT_TRUE(isAt(location, there, 4)) << k;
       } else if (location.fix.valid) {
@@ -303,11 +304,11 @@ TEST(Tracking, RobotThatIsCarriedAwayIsFoundAgainWithinTwoFrames)
 
 TEST(Tracking, HiddenLampsAreCoastedOverAndFoundAgain)
 {
-  Room room;
+  TrackedRoom room;
   vpVlpLocalizer localizer = room.localizer();
   double sigma = 0;
   for (int k = 0; k < 40; ++k) {
-    const double t = k * frameTime;
+    const double t = k * framePeriod;
     const bool hidden = k >= 15 && k < 22;
     for (Hung &lamp : room.lamps) {
       lamp.lit = !hidden;
@@ -337,7 +338,7 @@ Place arc(double t)
 
 TEST(Tracking, OneLampAloneStillHoldsThePose)
 {
-  Room room, blind;
+  TrackedRoom room, blind;
   vpVlpLocalizer localizer = room.localizer(), other = room.localizer();
   vpVlpLocation one, none;
   for (int k = 0; k < 40; ++k) {
@@ -345,7 +346,7 @@ TEST(Tracking, OneLampAloneStillHoldsThePose)
       room.lamps[lamp].lit = k < 15 || lamp == 2;
       blind.lamps[lamp].lit = k < 15;
     }
-    const double t = k * frameTime;
+    const double t = k * framePeriod;
     one = localizer.process(room.frame(t, arc));
     EXPECT_TRUE(isAt(one, arc(t), 4)) << k;
     if (k < 22) {
@@ -362,7 +363,7 @@ TEST(Tracking, OneLampAloneStillHoldsThePose)
 
 TEST(Tracking, WithoutLampsItIsLostInTheEndAndSaysSo)
 {
-  Room room;
+  TrackedRoom room;
   vpVlpLocalizer localizer = room.localizer();
   run(localizer, room, stand, 0, 10);
   for (Hung &lamp : room.lamps) {
@@ -373,7 +374,7 @@ TEST(Tracking, WithoutLampsItIsLostInTheEndAndSaysSo)
   EXPECT_FALSE(lost.tracked);
   EXPECT_EQ(lost.state, State::starting);
   EXPECT_NE(lost.fix.refusal.find("no lamp"), std::string::npos) << lost.fix.refusal;
-  const vpVlpLocation found = run(localizer, Room(), stand, 3, 2);
+  const vpVlpLocation found = run(localizer, TrackedRoom(), stand, 3, 2);
   EXPECT_TRUE(found.tracked);
   EXPECT_TRUE(isAt(found, stand(0), 4));
 }
@@ -381,14 +382,14 @@ TEST(Tracking, WithoutLampsItIsLostInTheEndAndSaysSo)
 TEST(Tracking, LampThatIsReplacedLosesItsIdAtOnce)
 {
   for (const double other : {4600.0, 3600.0}) { // unknown to the map; that of D, which is dark
-    Room room;
+    TrackedRoom room;
     vpVlpLocalizer localizer = room.localizer();
     for (int k = 0; k < 20; ++k) {
       if (k >= 10) {
         room.lamps[3].lit = false;
         room.lamps[1].frequency = other;
       }
-      const double t = k * frameTime;
+      const double t = k * framePeriod;
       const vpVlpLocation location = localizer.process(room.frame(t, drive));
       EXPECT_TRUE(isAt(location, drive(t), 4)) << other << " Hz, " << k;
       for (const vpLampObservation &seen : location.observations) {

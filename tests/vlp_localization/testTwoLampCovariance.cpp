@@ -17,7 +17,8 @@ namespace
 using Complex = std::complex<double>;
 
 // Mean NEES over draws of a random robot under two random lamps.
-void expectConsistent(unsigned int seed, const Sigmas &sigmas, int degreesOfFreedom, double height = 0)
+void expectTwoLampsConsistent(unsigned int seed, const Sigmas &sigmas, int degreesOfFreedom,
+                              double height = 0)
 {
   Random random(seed);
   ChiSquareMean mean;
@@ -137,28 +138,28 @@ TEST(TwoLampCovariance, TranslationAndYawOfTheMount)
 
 TEST(TwoLampCovariance, ConsistentWithImagePoints)
 {
-  expectConsistent(21, {3e-4, 0, {0, 0, 0}, {0, 0, 0}}, 4, 2.1);
-  expectConsistent(22, {3e-4, 0, {0, 0, 0}, {0, 0, 0}}, 4);
+  expectTwoLampsConsistent(21, {3e-4, 0, {0, 0, 0}, {0, 0, 0}}, 4, 2.1);
+  expectTwoLampsConsistent(22, {3e-4, 0, {0, 0, 0}, {0, 0, 0}}, 4);
 }
 
 TEST(TwoLampCovariance, ConsistentWithMap)
 {
-  expectConsistent(23, {3e-4, 0.004, {0, 0, 0}, {0, 0, 0}}, 4);
+  expectTwoLampsConsistent(23, {3e-4, 0.004, {0, 0, 0}, {0, 0, 0}}, 4);
 }
 
 // Position and tilt err together, so what counts is the rest: at twice this tilt the second order, height
 // times tilt squared, shows against an image point good to 0.6 mm (mean NEES 6.34 of 6).
 TEST(TwoLampCovariance, ConsistentWithTiltOfTheMount)
 {
-  expectConsistent(24, {3e-4, 0, {0, 0, 0}, {0.002, 0.004, 0}}, 6);
+  expectTwoLampsConsistent(24, {3e-4, 0, {0, 0, 0}, {0.002, 0.004, 0}}, 6);
 }
 
 TEST(TwoLampCovariance, ConsistentWithTheLens)
 {
-  expectConsistent(26, {3e-4, 0, {0, 0, 0}, {0, 0, 0}, 0.003, 0.005}, 4);
+  expectTwoLampsConsistent(26, {3e-4, 0, {0, 0, 0}, {0, 0, 0}, 0.003, 0.005}, 4);
 }
 
 TEST(TwoLampCovariance, ConsistentWithAllSigmasAtOnce)
 {
-  expectConsistent(25, {5e-4, 0.003, {0.002, 0.004, 0.003}, {0.003, 0.005, 0.006}, 0.002, 0.004}, 6);
+  expectTwoLampsConsistent(25, {5e-4, 0.003, {0.002, 0.004, 0.003}, {0.003, 0.005, 0.006}, 0.002, 0.004}, 6);
 }

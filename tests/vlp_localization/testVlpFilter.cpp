@@ -37,7 +37,7 @@ double placeSigma(const vpVlpFix &fix)
   return std::sqrt(std::max(fix.covariance(0, 0), fix.covariance(1, 1)));
 }
 
-vpHomogeneousMatrix stand(double)
+vpHomogeneousMatrix standing(double)
 {
   return lampScene::frame(0.1, -0.2, 0, 0, 0, 0.7);
 }
@@ -86,7 +86,7 @@ TEST(VlpFilter, TwoLampsSeenOnceGiveThePoseOfTheTwoLampSolver)
   claims.rotationSigma = {0.003, 0.004, 0.002};
   for (const Sigmas &sigmas : {Sigmas(), claims}) {
     for (unsigned int seed = 1; seed <= 50; ++seed) {
-      Drive drive(seed, stand, sigmas);
+      Drive drive(seed, standing, sigmas);
       const vpLampSight first = drive.sight(0, 0), second = drive.sight(2, 0);
       const vpVlpFix solved = vpTwoLampSolver().solve(first, second, drive.rig());
       ASSERT_TRUE(solved.valid) << solved.refusal;
@@ -110,7 +110,7 @@ TEST(VlpFilter, TwoLampsSeenOnceGiveThePoseOfTheTwoLampSolver)
 // distance are the two directions in which one lamp says nothing.
 TEST(VlpFilter, OneLampCorrectsInTwoDirectionsAndNotAlongTheCircleAboutIt)
 {
-  Drive drive(1, stand);
+  Drive drive(1, standing);
   vpVlpFilter filter(drive.rig());
   drive.start(filter);
   drive.frame(filter, 0);
@@ -215,7 +215,7 @@ TEST(VlpFilter, StateGoesByTheCovarianceAlone)
 
 TEST(VlpFilter, WithoutLampsItCoastsAndIsLostInTheEnd)
 {
-  Drive drive(1, stand);
+  Drive drive(1, standing);
   vpVlpFilter filter(drive.rig());
   drive.start(filter);
   for (int k = 0; k < 10; ++k) {
@@ -236,7 +236,7 @@ TEST(VlpFilter, LampBehindTheCameraChangesNothing)
   for (double positionSigma : {0.0, 0.01}) {
     Sigmas sigmas;
     sigmas.positionSigma = positionSigma;
-    Drive drive(1, stand, sigmas);
+    Drive drive(1, standing, sigmas);
     vpVlpFilter filter(drive.rig());
     drive.start(filter);
     drive.frame(filter, 0);
@@ -259,7 +259,7 @@ TEST(VlpFilter, LampBehindTheCameraChangesNothing)
 
 TEST(VlpFilter, BeforeItsStartNothingHappens)
 {
-  Drive drive(1, stand);
+  Drive drive(1, standing);
   vpVlpFilter filter(drive.rig());
   filter.advance(1);
   filter.mark(2);
@@ -274,7 +274,7 @@ TEST(VlpFilter, BeforeItsStartNothingHappens)
 
 TEST(VlpFilter, InnovationIsKnownBeforeTheUpdate)
 {
-  Drive drive(4, stand);
+  Drive drive(4, standing);
   vpVlpFilter filter(drive.rig());
   drive.start(filter);
   drive.frame(filter, 0);
@@ -324,7 +324,7 @@ TEST(VlpFilter, CovarianceStaysSymmetricAndNotNegative)
   sigmas.rotationSigma = {0.01, 0.01, 0.005};
   sigmas.translationSigma.setConstant(0.002);
   for (const bool free : {false, true}) {
-    Drive drive(7, stand, sigmas);
+    Drive drive(7, standing, sigmas);
     Random random(8);
     vpVlpFilter filter(drive.rig());
     filter.freeAttitude = free;
@@ -352,7 +352,7 @@ TEST(VlpFilter, CovarianceStaysSymmetricAndNotNegative)
 
 TEST(VlpFilter, MixtureHasTheMeanAndCovarianceOfItsParts)
 {
-  Drive drive(1, stand);
+  Drive drive(1, standing);
   vpVlpFilter before(drive.rig());
   drive.start(before);
   for (int k = 0; k < 10; ++k) {
@@ -384,7 +384,7 @@ TEST(VlpFilter, MixtureHasTheMeanAndCovarianceOfItsParts)
 
 TEST(VlpFilter, WidenedClaimsCountFromTheNextStartOn)
 {
-  Drive drive(1, stand);
+  Drive drive(1, standing);
   vpVlpFilter filter(drive.rig());
   EXPECT_FALSE(filter.claimsWidened());
   double before = 0;

@@ -20,7 +20,7 @@ vpScenario world()
   return vpScenario::load(std::string(VLP_DATA_DIR) + "/scenarios/servo.yaml");
 }
 
-const vpPath line = vpPath::polyline({{-0.3, 0}, {0.3, 0.1}});
+const vpPath slantedLine = vpPath::polyline({{-0.3, 0}, {0.3, 0.1}});
 
 vpServoSimulationSettings onStartOf(const vpPath &path)
 {
@@ -102,29 +102,29 @@ TEST(ServoSimulation, StaysOnTheLineWhereOdometryAloneDoesNot)
 {
   vpServoLoopSettings settings;
   settings.follower.reference.speed = 0.2;
-  vpServoSimulation lamps(world(), 7, onStartOf(line));
+  vpServoSimulation lamps(world(), 7, onStartOf(slantedLine));
   vpVlpPose poses(lamps);
-  const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, line, settings).run();
+  const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, slantedLine, settings).run();
   EXPECT_EQ(run.end, vpServoRun::End::arrived) << run.reason;
-  EXPECT_LT(rms(vpTrackErrorsOf(line, run, [&](double time) { return lamps.wMb(time); })), 0.005);
+  EXPECT_LT(rms(vpTrackErrorsOf(slantedLine, run, [&](double time) { return lamps.wMb(time); })), 0.005);
   EXPECT_EQ(std::count_if(run.pictures.begin(), run.pictures.end(), [](auto &one) { return one.fix; }),
             static_cast<std::ptrdiff_t>(run.pictures.size()));
 
   vpScenario wheels = world();
   wheels.motion.robot.turnSource = vpSimulatorTurtleBot3Settings::TurnSource::wheels;
-  vpServoSimulation alone(wheels, 7, onStartOf(line));
+  vpServoSimulation alone(wheels, 7, onStartOf(slantedLine));
   vpOdometryPose odometry(alone.wMb(0), 0);
-  const vpServoRun blind = vpServoLoop(alone.robot(), odometry, alone, line, settings).run();
-  EXPECT_GT(rms(vpTrackErrorsOf(line, blind, [&](double time) { return alone.wMb(time); })), 0.015);
+  const vpServoRun blind = vpServoLoop(alone.robot(), odometry, alone, slantedLine, settings).run();
+  EXPECT_GT(rms(vpTrackErrorsOf(slantedLine, blind, [&](double time) { return alone.wMb(time); })), 0.015);
 }
 
 TEST(ServoSimulation, SameSeedSameRun)
 {
   std::vector<double> ends;
   for (int i = 0; i < 2; ++i) {
-    vpServoSimulation lamps(world(), 3, onStartOf(line));
+    vpServoSimulation lamps(world(), 3, onStartOf(slantedLine));
     vpVlpPose poses(lamps);
-    vpServoLoop loop(lamps.robot(), poses, lamps, line, {});
+    vpServoLoop loop(lamps.robot(), poses, lamps, slantedLine, {});
     loop.watch = [](const vpServoStep &step, const auto &) { return step.time < 2; };
     ends.push_back(loop.run().steps.back().wMb[0][3]);
   }
@@ -133,13 +133,13 @@ TEST(ServoSimulation, SameSeedSameRun)
 
 TEST(ServoSimulation, APictureIsKnownOnlyAfterReadoutAndLocalizer)
 {
-  vpServoSimulationSettings settings = onStartOf(line);
+  vpServoSimulationSettings settings = onStartOf(slantedLine);
   settings.computeDelay = 0.05;
   vpServoSimulation lamps(world(), 1, settings);
   const vpVlpRig &rig = lamps.simulation().rig();
   const double readout = rig.lineTiming().middle(rig.lineTiming().lines() - 1);
   vpVlpPose poses(lamps);
-  vpServoLoop loop(lamps.robot(), poses, lamps, line, {});
+  vpServoLoop loop(lamps.robot(), poses, lamps, slantedLine, {});
   loop.watch = [](const vpServoStep &step, const auto &) { return step.time < 1; };
   const vpServoRun run = loop.run();
   ASSERT_GT(run.pictures.size(), 5u);
@@ -153,10 +153,10 @@ TEST(ServoSimulation, CameraThatStallsBringsItToAStandAndItGoesOn)
 {
   vpServoLoopSettings settings;
   settings.follower.reference.speed = 0.2;
-  vpServoSimulation lamps(world(), 2, onStartOf(line));
+  vpServoSimulation lamps(world(), 2, onStartOf(slantedLine));
   StallingFeed feed(lamps, 1.5, 4);
   vpVlpPose poses(feed);
-  const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, line, settings).run();
+  const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, slantedLine, settings).run();
   EXPECT_GT(fastest(lamps, 1.4, 1.5), 0.1);
   EXPECT_LT(fastest(lamps, 1.5 + settings.safety.pictureTimeout + 0.3, 4), standing);
   EXPECT_EQ(run.end, vpServoRun::End::arrived) << run.reason;
@@ -179,9 +179,9 @@ TEST(ServoSimulation, LampsAndOdometryThatFailBringItToAStandWithin300MsAndItGoe
 {
   vpServoLoopSettings settings;
   settings.follower.reference.speed = 0.2;
-  vpServoSimulation lamps(darkened(1.5, 6), 2, onStartOf(line));
+  vpServoSimulation lamps(darkened(1.5, 6), 2, onStartOf(slantedLine));
   OdometryThatFails poses(lamps, 1.5, 6);
-  const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, line, settings).run();
+  const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, slantedLine, settings).run();
   double crossed = 0; // s, when the covariance did not allow any more
   for (const vpServoStep &step : run.steps) {
     crossed = crossed == 0 && step.time > 1.5 && step.share == 0 ? step.time : crossed;
@@ -197,9 +197,9 @@ TEST(ServoSimulation, LampsAndOdometryThatFailBringItToAStandWithin300MsAndItGoe
 TEST(ServoSimulation, SpoofedPairBesideOdometryIsNotFollowed)
 {
   for (const std::uint64_t seed : {2, 3, 4}) {
-    vpServoSimulation lamps(spoofedPair::spoofed(world(), 1.5), seed, onStartOf(line));
+    vpServoSimulation lamps(spoofedPair::spoofed(world(), 1.5), seed, onStartOf(slantedLine));
     vpVlpPose poses(lamps);
-    vpServoLoop loop(lamps.robot(), poses, lamps, line, {});
+    vpServoLoop loop(lamps.robot(), poses, lamps, slantedLine, {});
     double farthest = 0; // m
     loop.watch = [&](const vpServoStep &, const std::vector<vpLocatedPicture> &pictures) {
       for (const vpLocatedPicture &picture : pictures) {
@@ -220,10 +220,10 @@ TEST(ServoSimulation, SpoofedPairWithoutOdometryBringsItToAStandWithin300MsAndIt
   settings.follower.reference.speed = 0.1;
   settings.safety.giveUp = 4;                   // s, longer than the place before stays known
   for (const double from : {1.5, 1.52, 1.54}) { // s, before a picture and in the midst of one
-    vpServoSimulation lamps(spoofedPair::spoofed(world(), from), 2, onStartOf(line));
+    vpServoSimulation lamps(spoofedPair::spoofed(world(), from), 2, onStartOf(slantedLine));
     spoofedPair::NoOdometry feed(lamps);
     vpVlpPose poses(feed);
-    const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, line, settings).run();
+    const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, slantedLine, settings).run();
     double stood = 0; // s, since then
     for (double time = from; time < lamps.now(); time += 0.01) {
       stood = std::abs(lamps.robot().twist(time).v) < standing ? stood : time + 0.01 - from;
@@ -239,9 +239,9 @@ TEST(ServoSimulation, DarkRoomNeverMoves)
 {
   vpServoLoopSettings settings;
   settings.safety.giveUp = 2;
-  vpServoSimulation lamps(darkened(-1, 1e9), 1, onStartOf(line));
+  vpServoSimulation lamps(darkened(-1, 1e9), 1, onStartOf(slantedLine));
   vpVlpPose poses(lamps);
-  const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, line, settings).run();
+  const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, slantedLine, settings).run();
   EXPECT_EQ(run.end, vpServoRun::End::failed);
   EXPECT_EQ(fastest(lamps, 0, 1e9), 0);
 }
