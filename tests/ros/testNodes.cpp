@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// The nodes of apps/ros as separate processes about one master, which run-nodes.sh starts.
+// The nodes of apps/ros as separate processes about one master, which with-master.sh starts.
 
 #include <algorithm>
 #include <cmath>

@@ -237,7 +237,7 @@ vpPaintedLamp squareLamp(double side, double angle, double phase)
 }
 } // namespace
 
-TEST(LedRoiDetector, SquaresAreQuadrilaterals)
+TEST(LedRoiDetector, SlowSquaresAreQuadrilaterals)
 {
   for (const double side : {30, 60, 150})
     for (const double angle : {0.0, M_PI / 6})

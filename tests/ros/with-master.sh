@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# bash run-nodes.sh <build of apps/ros> [ARGUMENT...]: test_nodes of that build, with a master of its own.
+# bash with-master.sh COMMAND [ARGUMENT...]: runs it with a ROS master of its own, at a free port.
 set -euo pipefail
 
 export PATH="/usr/bin:$PATH" # the python3 that Debian's ROS is for
@@ -8,6 +8,8 @@ export ROS_MASTER_URI="http://localhost:$port" ROS_HOSTNAME=localhost ROS_LOG_DI
 roscore -p "$port" >"$ROS_LOG_DIR/roscore.txt" 2>&1 &
 master=$!
 trap 'kill $master; wait $master || true; rm -r "$ROS_LOG_DIR"' EXIT
-build=$1
-shift
-"$build/devel/lib/visp_vlp/test_nodes" "$@"
+until rostopic list >/dev/null 2>&1; do
+  kill -0 "$master" || { cat "$ROS_LOG_DIR/roscore.txt" >&2; exit 1; }
+  sleep 0.2
+done
+"$@"
