@@ -20,7 +20,7 @@ vpBoardServoWorld::vpBoardServoWorld(const vpVlpServoOptions &options)
   settings.clock = vpHostTime;
   m_base = vpOpenTurtleBot3(options.robot, settings);
   if (options.pose != vpVlpServoOptions::Pose::lamps) {
-    m_pictures = std::make_unique<NoPictures>();
+    m_pictures = std::make_unique<vpNoPictures>();
     return;
   }
   const vpVlpRig rig = vpVlpRig::load(options.rigFile);

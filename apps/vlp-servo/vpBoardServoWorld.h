@@ -35,13 +35,6 @@ public:
   }
 
 private:
-  class NoPictures : public vpPictureFeed
-  {
-  public:
-    void addOdometry(const vpOdometry &) override {}
-    std::optional<vpLocatedPicture> next(double) override { return std::nullopt; }
-  };
-
   vpSteadyClock m_clock;
   vpLampMap m_map;
   std::unique_ptr<vpRobotTurtleBot3> m_base;

@@ -4,6 +4,8 @@
  */
 #include "vpServoWorld.h"
 
+#include <visp3/vlp_servo/vpServoRobot.h>
+
 #include "vpBoardServoWorld.h"
 
 BEGIN_VISP_NAMESPACE
@@ -87,10 +89,31 @@ private:
   vpLiveSimulation m_world;
   vpLivePictures m_pictures; // last: its thread uses the world
 };
+
+//! A robot behind topics of ROS, where other nodes look at its pictures.
+class OnRos : public vpServoWorld
+{
+public:
+  explicit OnRos(const std::string &nameSpace) : m_robot(vpServoRobot::openRos(nameSpace)) {}
+
+  vpMobileBase &base() override { return m_robot->base(); }
+  vpServoClock &clock() override { return m_robot->clock(); }
+  vpPictureFeed &pictures() override { return m_pictures; }
+  const vpLampMap &map() const override { return m_map; }
+  std::unique_ptr<vpPoseSource> poses() override { return m_robot->poses(); }
+
+private:
+  std::unique_ptr<vpServoRobot> m_robot;
+  vpNoPictures m_pictures;
+  vpLampMap m_map;
+};
 } // namespace
 
 std::unique_ptr<vpServoWorld> vpOpenServoWorld(const vpVlpServoOptions &options, const vpPath &path)
 {
+  if (options.onRos()) {
+    return std::make_unique<OnRos>(options.robot.substr(options.robot.find(':') + 1));
+  }
   if (options.robot != "sim") {
     return std::make_unique<vpBoardServoWorld>(options);
   }

@@ -10,6 +10,7 @@
 
 #include <visp3/vlp_robot/vpMobileBase.h>
 #include <visp3/vlp_servo/vpPictureFeed.h>
+#include <visp3/vlp_servo/vpPoseSource.h>
 #include <visp3/vlp_servo/vpServoClock.h>
 
 #include "vpVlpServoOptions.h"
@@ -26,11 +27,21 @@ public:
   virtual vpServoClock &clock() = 0;
   virtual vpPictureFeed &pictures() = 0;
   virtual const vpLampMap &map() const = 0;
+  //! Its pose by the lamps.
+  virtual std::unique_ptr<vpPoseSource> poses() { return std::make_unique<vpVlpPose>(pictures()); }
 
   //! The true pose of the base at a time (s) up to now; empty where nobody knows it.
   virtual std::function<vpHomogeneousMatrix(double)> truth() { return {}; }
   //! V, of the battery; empty where nobody knows it.
   virtual std::function<double()> battery() { return {}; }
+};
+
+//! Of a robot that is driven without a camera, or whose pictures others look at.
+class vpNoPictures : public vpPictureFeed
+{
+public:
+  void addOdometry(const vpOdometry &) override {}
+  std::optional<vpLocatedPicture> next(double) override { return std::nullopt; }
 };
 
 /*!

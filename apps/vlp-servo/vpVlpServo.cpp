@@ -67,7 +67,7 @@ std::unique_ptr<vpPoseSource> posesOf(const vpVlpServoOptions &options, const vp
   case vpVlpServoOptions::Pose::lamps:
     break;
   }
-  return std::make_unique<vpVlpPose>(world.pictures());
+  return world.poses();
 }
 
 //! Whether somebody has pressed a key in the terminal that the program runs in.

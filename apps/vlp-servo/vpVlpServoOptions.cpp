@@ -26,12 +26,15 @@ Examples:
   vlp-servo --robot sim --scenario data/scenarios/servo.yaml --path data/paths/line-a.yaml --speed 0.004
   vlp-servo --robot sim --scenario data/scenarios/servo.yaml --path data/paths/square.yaml --laps 2 --log run
   vlp-servo --robot opencr:usb --camera aravis://UB300 --rig rig.yaml --lamps lamps.yaml --path line.yaml
+  vlp-servo --robot ros:/robot1 --path data/paths/line-a.yaml --log run
   vlp-servo --list-robots
 
 Robots:
   sim              the TurtleBot of a scenario: its rig, lamps, light and errors; its motion is not driven
   opencr:usb       a TurtleBot3 on its USB cable
   opencr:DEVICE    the same through a serial device, as opencr:/dev/ttyACM0
+  ros:NAMESPACE    a robot on ROS, as ros:/robot1: cmd_vel, odom and vlp_location of that namespace; camera,
+                   rig and lamps are those of its nodes (apps/ros)
 
 Paths (YAML, metres):
   {type: polyline, points_m: [[-0.35, 0], [0.35, 0]], closed: false}
@@ -90,7 +93,7 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
   app.get_formatter()->column_width(28);
   std::string speed, gain, delay, startText, fence;
   bool openLoop = false, odometryOnly = false, headless = false;
-  vpAddName(app, "--robot", robot, "ROBOT", "sim, opencr:usb or opencr:DEVICE");
+  vpAddName(app, "--robot", robot, "ROBOT", "sim, opencr:usb, opencr:DEVICE or ros:NAMESPACE");
   app.add_flag("--list-robots", listRobots, "print the boards that are attached by USB, and end");
   vpAddInput(app, "--scenario", scenario, "FILE", "sim: the world, see data/scenarios/servo.yaml");
   vpAddSeed(app, "--seed", seed, "sim: of all that is left to chance (default 1)");
@@ -148,14 +151,19 @@ bool vpVlpServoOptions::parse(int argc, char **argv)
 void vpVlpServoOptions::check() const
 {
   if (robot.empty()) {
-    vpBadInput("--robot: nothing, expected sim, opencr:usb or opencr:DEVICE (--help explains the options)");
+    vpBadInput("--robot: nothing, expected sim, opencr:usb, opencr:DEVICE or ros:NAMESPACE (--help explains "
+               "the options)");
   }
   if (pathFile.empty()) {
     vpBadInput("--path: nothing, expected the file of the path to drive");
   }
   const bool sim = robot == "sim";
-  if (!sim && robot.rfind("opencr:", 0) != 0) {
-    vpBadInput("--robot: " + vpShown(robot) + ", expected sim, opencr:usb or opencr:DEVICE");
+  if (!sim && !onRos() && robot.rfind("opencr:", 0) != 0) {
+    vpBadInput("--robot: " + vpShown(robot) + ", expected sim, opencr:usb, opencr:DEVICE or ros:NAMESPACE");
+  }
+  if (onRos() && (!rigFile.empty() || !lampsFile.empty() || !camera.uri.empty() || display)) {
+    vpBadInput("--rig, --lamps, --camera, --display: beside --robot " + vpShown(robot) +
+               ", whose nodes have them");
   }
   if (sim && scenario.empty()) {
     vpBadInput("--scenario: nothing, expected the file of the world that sim drives in");
@@ -168,7 +176,8 @@ void vpVlpServoOptions::check() const
     vpBadInput("--scenario, --typical, --wheels-only, --real-time: beside --robot " + vpShown(robot) +
                ", expected them with sim only");
   }
-  if (!sim && pose == Pose::lamps && (rigFile.empty() || lampsFile.empty() || camera.uri.empty())) {
+  if (!sim && !onRos() && pose == Pose::lamps &&
+      (rigFile.empty() || lampsFile.empty() || camera.uri.empty())) {
     vpBadInput("--rig, --lamps, --camera: expected all of them with a real robot");
   }
 }

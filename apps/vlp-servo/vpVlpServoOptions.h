@@ -21,7 +21,7 @@ struct vpVlpServoOptions {
   enum class Pose { lamps, odometry, commands };
 
   bool listRobots = false; // and end; the rest is not asked for
-  std::string robot;       // sim, opencr:usb, opencr:DEVICE
+  std::string robot;       // sim, opencr:usb, opencr:DEVICE, ros:NAMESPACE
   std::string scenario;    // of sim, a file
   std::uint64_t seed = 1;
   bool typical = false;    // rig errors as vpScenario::useTypicalRig() draws them
@@ -40,6 +40,9 @@ struct vpVlpServoOptions {
 
   //! \return False where the help was asked for and is printed. \throw vpException on bad usage.
   bool parse(int argc, char **argv);
+
+  //! Whether robot is behind topics of ROS.
+  bool onRos() const { return robot.rfind("ros:", 0) == 0; }
 
   //! start, or that of \e path.
   vpServoStart startOn(const vpPath &path) const;

@@ -150,6 +150,7 @@ TEST(VlpServo, BadUsage)
   expectServoRefuses(with(sim, {"--path", folder / "none.yaml"}), {"none.yaml"});
   expectServoRefuses({"--robot", "tank", "--path", "x"}, {"--robot: tank", "opencr:usb"});
   expectServoRefuses({"--robot", "opencr:usb", "--path", "x"}, {"--rig, --lamps, --camera"});
+  expectServoRefuses({"--robot", "ros:/r", "--path", "x", "--rig", "x"}, {"beside --robot ros:/r"});
   expectServoRefuses(with(good, {"--speed", "0"}), {"--speed: 0"});
   expectServoRefuses(with(good, {"--speed", "fast"}), {"--speed: fast"});
   expectServoRefuses(with(good, {"--gain", "-1"}), {"--gain: -1"});

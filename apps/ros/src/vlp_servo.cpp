@@ -8,50 +8,20 @@
 #include <visp3/vlp_servo/vpServoLoop.h>
 
 #include "vpRosNode.h"
-#include "vpRosRobot.h"
+#include "vpRosServoRobot.h"
 
 namespace
 {
-//! Periods on the clock of ROS, which may be simulated.
-class RosClock : public vpServoClock
-{
-public:
-  double period() const override { return m_period; }
-  double next() override
-  {
-    m_rate.sleep();
-    return now();
-  }
-  double now() override { return ros::Time::now().toSec(); }
-
-private:
-  double m_period = 0.02; // s
-  ros::Rate m_rate{1 / m_period};
-};
-
 void run()
 {
-  ros::NodeHandle nh, own("~");
+  const ros::NodeHandle nh, own("~");
   const vpPath path = vpPath::load(vpRequiredParameter(own, "path", "the name of a path's yaml"));
   vpServoLoopSettings settings;
   settings.follower.reference.speed = own.param("speed", settings.follower.reference.speed); // m/s
-  vpRosBase base(nh,
-                 {own.param("most_v", 0.22), own.param("most_w", 2.84)}); // m/s, rad/s; a TurtleBot3 Burger's
-  vpRosPose poses(nh);
-  RosClock clock;
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
-  const double patience = own.param("patience", 10.0); // s, for the first odom
-  const ros::Time begin = ros::Time::now();
-  while (ros::ok() && ros::Time::now() - begin < ros::Duration(patience)) {
-    try {
-      base.odometry();
-      break;
-    } catch (const vpException &) {
-      ros::Duration(0.05).sleep();
-    }
-  }
-  vpServoLoop loop(base, poses, clock, path, settings);
+  vpRosServoRobot robot(
+      nh, {own.param("most_v", vpRosServoRobot::mostV), own.param("most_w", vpRosServoRobot::mostW)});
+  const std::unique_ptr<vpPoseSource> poses = robot.poses();
+  vpServoLoop loop(robot.base(), *poses, robot.clock(), path, settings);
   std::string waiting;
   loop.watch = [&](const vpServoStep &step, const std::vector<vpLocatedPicture> &) {
     if (step.waiting != waiting) {
