@@ -29,9 +29,12 @@ public:
 
   /*!
     Opens a robot on ROS, for programs that stand on no ROS: libvlp_servo_ros.so has it, which apps/ros
-    builds. The loader finds it where `source setup.bash` has set LD_LIBRARY_PATH. \param nameSpace Of the
-    robot's topics cmd_vel, odom and vlp_location, as "/robot1". \throw vpException (ioError) where there is
-    no such library, no ROS master, or no odometry for ten seconds.
+    builds. The loader finds it where `source setup.bash` has set LD_LIBRARY_PATH.
+
+    \param nameSpace Of the robot's topics cmd_vel, odom and vlp_location, as "/robot1".
+
+    \throw vpException (ioError) where there is no such library, no ROS master, or no odometry for ten
+    seconds.
   */
   static std::unique_ptr<vpServoRobot> openRos(const std::string &nameSpace);
 };
