@@ -3,13 +3,14 @@
 
   /usr/bin/python3 tests/ros/measure.py BUILD robots [N]   N simulated robots (5), everything on this machine
   /usr/bin/python3 tests/ros/measure.py BUILD sizes        a robot with pictures of two sizes, raw and compressed
-  /usr/bin/python3 tests/ros/measure.py BUILD splits       each split over the link, as root
+  /usr/bin/python3 tests/ros/measure.py BUILD splits       each split over the link, as root; the robot drives line A
 
 BUILD is the build of apps/ros (build/release/ros). The link of `splits` is two network namespaces joined by a
 relay: 20 ms of delay each way, 20 Mbit/s, 1 % of the packets lost. Prints rows of Markdown.
 """
 import fcntl
 import heapq
+import math
 import os
 import random
 import select
@@ -25,7 +26,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(HERE, "..", "..", "data")
 SIZE = "800x600"
 LAMPS = DATA + "/lamps/paper.yaml"
-SECONDS = 20
+SETTLED, SECONDS = 15, 20  # s, from the nodes' start to what is measured, and its length
+LINE_END = 0.35, -0.005  # m, of data/paths/line-a.yaml
 
 
 class Link:
@@ -139,7 +141,7 @@ LISTEN = """
 import bisect, json, sys, time
 import rospy
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
-names, seconds = sys.argv[1].split(","), float(sys.argv[2])
+names, settled, seconds = sys.argv[1].split(","), float(sys.argv[2]), float(sys.argv[3])
 truth, heard = {n: [] for n in names}, {n: [] for n in names}
 rospy.init_node("listener", disable_signals=True)
 for n in names:
@@ -147,7 +149,7 @@ for n in names:
         (m.header.stamp.to_sec(), m.pose.position.x, m.pose.position.y)))
     rospy.Subscriber(f"/{n}/location", PoseWithCovarianceStamped, lambda m, n=n: heard[n].append(
         (m.header.stamp.to_sec(), time.time(), m.pose.pose.position.x, m.pose.pose.position.y)))
-time.sleep(15)
+time.sleep(settled)
 begin = time.time()
 time.sleep(seconds)
 rows = {}
@@ -161,7 +163,7 @@ for n in names:
             s = (stamp - a[0]) / (b[0] - a[0])
             errors.append(((a[1] + s * (b[1] - a[1]) - x) ** 2 + (a[2] + s * (b[2] - a[2]) - y) ** 2) ** 0.5)
         delays.append(at - stamp)
-    rows[n] = {"poses": len(delays), "errors": sorted(errors), "delays": sorted(delays)}
+    rows[n] = {"poses": len(delays), "errors": sorted(errors), "delays": sorted(delays), "end": truth[n][-1][1:]}
 print(json.dumps(rows))
 """
 
@@ -172,7 +174,8 @@ def listen(nodes, robots, host=None, master="127.0.0.1"):
     environment = dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"], ROS_MASTER_URI=f"http://{master}:11397",
                        ROS_IP=Link.ADDRESSES.get(host, "127.0.0.1"), ROS_LOG_DIR=nodes.logs.name)
     prefix = ["ip", "netns", "exec", host] if host else []
-    out = subprocess.run(prefix + ["/usr/bin/python3", "-c", LISTEN, ",".join(robots), str(SECONDS)], env=environment,
+    out = subprocess.run(prefix + ["/usr/bin/python3", "-c", LISTEN, ",".join(robots), str(SETTLED), str(SECONDS)],
+                         env=environment,
                          stdout=subprocess.PIPE, check=True).stdout
     return json.loads(out.splitlines()[-1])
 
@@ -201,7 +204,7 @@ def robots(build, count):
         for k, name in enumerate(names):
             nodes.robot(name, here, x=-0.35 + 0.15 * k, y=0.1 * (k % 3) - 0.1)
         before = {}
-        timer = threading.Timer(15, lambda: before.update({n: nodes.seconds(n) for n in here}))
+        timer = threading.Timer(SETTLED, lambda: before.update({n: nodes.seconds(n) for n in here}))
         timer.start()
         heard = listen(nodes, names)
         print(HEADER)
@@ -240,8 +243,8 @@ def splits(build):
          {"simulator": robot, "CamKF": robot, "ID_recognition": pc, "vlc_locator": pc}),
         ("all on the robot", "raw", dict.fromkeys(("simulator", "CamKF", "ID_recognition", "vlc_locator"), robot)),
     )
-    print(HEADER[:HEADER.index("\n")] + " from the robot, Mbit/s | to it, Mbit/s |")
-    print("|---|---|---|---|---|---|---|---|")
+    print(HEADER[:HEADER.index("\n")] + " from the robot, Mbit/s | to it, Mbit/s | stands from the line's end, mm |")
+    print("|---|---|---|---|---|---|---|---|---|")
     for name, transport, where in cases:
         link, nodes = Link(), Nodes(build)
         try:
@@ -249,10 +252,17 @@ def splits(build):
             time.sleep(5)
             nodes.robot("robot", where, Link.ADDRESSES[pc], transport)
             before = {}
-            threading.Timer(15, lambda: before.update(link.sent)).start()
-            heard = listen(nodes, ["robot"], pc, Link.ADDRESSES[pc])
+
+            def drive():
+                before.update(link.sent)
+                nodes.start("vlp_servo", ["__ns:=/robot", f"_path:={DATA}/paths/line-a.yaml", "_speed:=0.05"],
+                            where["vlc_locator"], Link.ADDRESSES[pc])
+
+            threading.Timer(SETTLED, drive).start()
+            heard = listen(nodes, ["robot"], pc, Link.ADDRESSES[pc])["robot"]
             rate = {n: 8e-6 * (link.sent[n] - before[n]) / SECONDS for n in before}
-            print(row(name, heard["robot"]), f"{rate[robot]:.2f} | {rate[pc]:.2f} |", flush=True)
+            print(row(name, heard), f"{rate[robot]:.2f} | {rate[pc]:.2f} | {1e3 * math.dist(heard['end'], LINE_END):.1f} |",
+                  flush=True)
         finally:
             nodes.close()
             link.close()

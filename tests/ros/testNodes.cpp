@@ -58,13 +58,17 @@ class Robot
 public:
   explicit Robot(const std::string &name) : m_name(name)
   {
-    start("simulator", {"_scenario:=" + data + "/scenarios/servo.yaml", "_start_x:=-0.35"});
-    for (const std::string node : {"CamKF", "ID_recognition", "vlc_locator"}) {
+    for (const std::string node : {"simulator", "CamKF", "ID_recognition", "vlc_locator"}) {
       startNode(node);
     }
   }
 
-  void startNode(const std::string &node) { start(node, {"_rig:=" + rig, "_lamps:=" + lamps}); }
+  void startNode(const std::string &node)
+  {
+    start(node, node == "simulator" ? std::vector<std::string>{"_scenario:=" + data + "/scenarios/servo.yaml",
+                                                               "_start_x:=-0.35"}
+                                    : std::vector<std::string>{"_rig:=" + rig, "_lamps:=" + lamps});
+  }
 
   void start(const std::string &node, std::vector<std::string> arguments, const std::string &as = "")
   {
@@ -210,6 +214,16 @@ TEST(RosNodes, CompressedPicturesDoAsWell)
   }
 }
 
+// A pose within two seconds after the node's start.
+void expectPosesAgain(Robot &robot, const std::string &node, const std::vector<Listener::Place> &location)
+{
+  const size_t poses = location.size();
+  robot.startNode(node);
+  const double begin = now();
+  ASSERT_TRUE(spinUntil([&] { return location.size() > poses; }, 2));
+  std::cout << node << ": a pose again " << now() - begin << " s after its start\n";
+}
+
 // Each node is killed in the middle of a drive and started again: the robot stands, poses come back, it goes
 // on.
 TEST(RosNodes, ANodeThatIsKilledComesBack)
@@ -226,15 +240,24 @@ TEST(RosNodes, ANodeThatIsKilledComesBack)
       ASSERT_TRUE(spinUntil([&] { return heard.commands.back().x == 0; }, 2)) << "it drives on";
     }
     spinUntil([] { return false; }, 0.5);
-    const size_t poses = heard.location.size();
-    robot.startNode(node);
-    const double begin = now();
-    ASSERT_TRUE(spinUntil([&] { return heard.location.size() > poses; }, 2));
-    std::cout << node << ": a pose again " << now() - begin << " s after its start\n";
+    expectPosesAgain(robot, node, heard.location);
   }
   ASSERT_TRUE(spinUntil([&] { return robot.node("vlp_servo").ended(); }, 40));
   EXPECT_EQ(robot.node("vlp_servo").wait(), 0) << robot.node("vlp_servo").err();
   EXPECT_LT(quantile(heard.errors(heard.location, 0), 1), 0.005);
+}
+
+TEST(RosNodes, ARobotWhoseCameraDiesStands)
+{
+  Robot robot("blind");
+  Listener heard("blind");
+  ASSERT_TRUE(spinUntil([&] { return heard.location.size() > 10; }, 20));
+  robot.start("vlp_servo", {"_path:=" + data + "/paths/line-a.yaml", "_speed:=0.05"});
+  ASSERT_TRUE(spinUntil([&] { return !heard.commands.empty() && heard.commands.back().x > 0.03; }, 20));
+  robot.kill("simulator");
+  ASSERT_TRUE(spinUntil([&] { return heard.commands.back().x == 0; }, 2)) << "it drives on";
+  expectPosesAgain(robot, "simulator", heard.location);
+  EXPECT_NEAR(heard.location.back().x, -0.35, 0.01); // where its world begins, not where it was
 }
 
 TEST(RosNodes, BadMessagesAreOneClearLine)
@@ -404,6 +427,11 @@ TEST(RosNodes, ARunIsPlayed)
   ASSERT_TRUE(spinUntil([&] { return location.getNumPublishers() > 0; }, 10));
   vpProcess camera("mvcam", {"__ns:=/played", "_rig:=" + room + "/rig.yaml", "_camera:=" + room});
   EXPECT_TRUE(spinUntil([&] { return poses.size() >= 5; }, 20)) << camera.err();
+  camera.signal(SIGKILL);
+  spinUntil([] { return false; }, 1);
+  const size_t before = poses.size();
+  vpProcess again("mvcam", {"__ns:=/played", "_rig:=" + room + "/rig.yaml", "_camera:=" + room});
+  EXPECT_TRUE(spinUntil([&] { return poses.size() > before; }, 2)) << again.err();
   for (const geometry_msgs::PoseWithCovarianceStamped &pose : poses) {
     EXPECT_NEAR(pose.header.stamp.toSec(), now(), 20);
     EXPECT_LT(std::hypot(pose.pose.pose.position.x, pose.pose.pose.position.y), 1);
