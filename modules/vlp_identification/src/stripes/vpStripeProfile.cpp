@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <visp3/vlp_core/vpBrighter.h>
 
@@ -16,22 +17,36 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-//! The part of line \e v inside an outline, shrunk towards its middle by \e share; false: none.
-bool stretch(const vpLampOutline &outline, double v, double share, double &first, double &last)
-{
-  if (!outline.stretch(v, first, last)) {
-    return false;
-  }
-  const double cut = 0.5 * (1 - share) * (last - first);
-  first += cut;
-  last -= cut;
-  return true;
-}
-
 //! Samples of one line that lie inside the lamp.
 struct Chord {
   int line, first, last;
 };
+
+//! Mean of the dimmest \e share of a line's samples, grey levels.
+double meanOfDimmest(const unsigned char *row, const Chord &chord, double share)
+{
+  std::vector<unsigned char> samples(row + chord.first, row + chord.last + 1);
+  const auto end = samples.begin() + std::max(1L, std::lround(share * static_cast<double>(samples.size())));
+  std::nth_element(samples.begin(), end - 1, samples.end());
+  return std::accumulate(samples.begin(), end, 0.) / static_cast<double>(end - samples.begin());
+}
+
+/*!
+  The share of a line's samples that the grey scale's bright end clips in no line, or a small one where it
+  clips all. A line's dimmest samples follow the modulation as all of them do, and are clipped last.
+*/
+double shareBelowWhite(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
+{
+  static const unsigned char nearlyWhite = 249;
+  static const double small = 0.1;
+  double share = 1;
+  for (const Chord &chord : chords) {
+    const int samples = chord.last - chord.first + 1,
+              white = vpBrighter::count(lines[chord.line] + chord.first, samples, nearlyWhite);
+    share = std::min(share, 1 - static_cast<double>(white) / samples);
+  }
+  return std::max(share, small);
+}
 
 //! The light of one line of the lamp, and that of its left and right half, grey levels.
 struct LineLight {
@@ -159,39 +174,38 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
   const vpLampOutline &outline = fit.outline;
   const bool ellipse = outline.shape == vpLampOutline::Shape::ellipse; // else its sides along the lines hide
   const bool soft = outline.shape == vpLampOutline::Shape::region || fit.blur > 0.1 * outline.diameter() / 2;
-  static const double halfALine = 0.5; // px, that a line is wide beside its middle
-  const double margin = soft ? 0 : 2 * fit.blur + halfALine;
+  static const double beside = 1; // px: half a line, and half of the pixel that a sharp edge divides
+  const double margin = soft ? 0 : 2 * fit.blur + beside;
   const Eigen::Vector4d box = outline.box();
-  const double top = ellipse ? std::max(0.0, box(1)) : std::max<double>(roi.box.y, box(1));
+  const double top = ellipse ? std::max(0.0, box(1)) : std::max(roi.box.y + margin, box(1));
   const double bottom =
-      ellipse ? std::min(lines.rows - 1.0, box(3)) : std::min<double>(roi.box.br().y - 1, box(3));
-  auto chordsOf = [&](double share) {
-    std::vector<Chord> chords;
-    for (int line = static_cast<int>(std::ceil(top + margin)); line <= bottom - margin; ++line) {
-      double first, last;
-      if (!stretch(outline, line, share, first, last)) {
-        continue;
-      }
-      const int left = std::max(0, static_cast<int>(std::ceil(first)));
-      const int right = std::min(lines.cols - 1, static_cast<int>(std::floor(last)));
+      ellipse ? std::min(lines.rows - 1.0, box(3)) : std::min(roi.box.br().y - 1 - margin, box(3));
+  static const double middle = 0.35; // of a chord
+  const double centre = 0.5 * (box(1) + box(3)), inside = 1 - 2 * margin / (box(3) - box(1));
+  std::vector<Chord> chords;
+  for (int line = static_cast<int>(std::ceil(top)); inside > 0 && line <= bottom; ++line) {
+    double first, last;
+    if (outline.stretch(centre + (line - centre) / inside, first, last)) {
+      const double half = 0.5 * (soft ? middle : inside) * (last - first);
+      const int left = std::max(0, static_cast<int>(std::ceil(0.5 * (first + last) - half))),
+                right = std::min(lines.cols - 1, static_cast<int>(std::floor(0.5 * (first + last) + half)));
       if (right - left >= 2) {
         chords.push_back({line, left, right});
       }
     }
-    return chords;
-  };
-  static const double nearlyAll = 0.8, middle = 0.35; // of a chord
+  }
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();
   Agreement agreement;
   const double noise = std::max(fit.noise, 0.3);
-  const std::vector<Chord> chords = chordsOf(soft ? middle : nearlyAll);
+  const double share = shareBelowWhite(lines, chords);
   for (const Chord &chord : chords) {
     const LineLight line(lines[chord.line], chord, fit.background);
     profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
-    profile.light.push_back(line.whole);
-    profile.sigma.push_back(noise / std::sqrt(line.samples));
+    profile.light.push_back(share < 1 ? meanOfDimmest(lines[chord.line], chord, share) - fit.background
+                                      : line.whole);
+    profile.sigma.push_back(noise / std::sqrt(share * line.samples));
     agreement.add(line, noise);
   }
   const double background = unclip(lines, chords, fit.background, noise, profile);
