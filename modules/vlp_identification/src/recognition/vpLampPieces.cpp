@@ -262,7 +262,8 @@ void vpLedDetector::complete(const vpLinePicture &picture, const std::vector<flo
     whole.fit = fit;
   }
   read(picture, whole);
-  if (!tells(whole.lamp) || !mayBlinkAlike(whole.lamp, region.lamp)) {
+  const bool better = whole.lamp.features.misfit < region.lamp.features.misfit;
+  if (!tells(whole.lamp) || !(better || mayBlinkAlike(whole.lamp, region.lamp))) {
     if (!tells(region.lamp)) {
       const vpStripeFeatures all =
           agreedStripes(picture, vpOutlineFitter::boxOf(extent->widest), extent->widest);

@@ -297,7 +297,9 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
     return features;
   }
   const vpStripeFeatures other = agreedStripes(picture, fit, roi);
-  return vpLedIdEvidence::tells(other) && (!tells || other.misfit < features.misfit) ? other : features;
+  const bool better =
+      features.signal == vpStripeFeatures::Signal::unmodulated || other.misfit < features.misfit;
+  return vpLedIdEvidence::tells(other) && better ? other : features;
 }
 
 /*!
