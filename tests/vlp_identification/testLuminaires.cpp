@@ -129,6 +129,26 @@ TEST(Luminaires, PatchesDoNotHideTheStripes)
     }
 }
 
+// The middle of a lamp is clipped at half its light, edges of stripes included; its rim is not.
+TEST(Luminaires, ClippingMovesNoEdgeOfAStripe)
+{
+  const Pattern twiceWhite = [](double u, double v) {
+    const double out = std::hypot(u, v) / 70;
+    return out > 1 ? 0.0 : 510 * (1 - 0.7 * out * out);
+  };
+  double squares = 0, mostDuty = 0;
+  static const int phases = 20;
+  for (int k = 0; k < phases; ++k) {
+    const Luminaire lamp{{209.7, 160.4}, twiceWhite, 450, 0.4, static_cast<double>(k) / phases};
+    const std::vector<vpLampObservation> seen = seenIn({lamp});
+    ASSERT_EQ(seen.size(), 1u) << "phase " << lamp.phase;
+    squares += std::pow(seen[0].features.frequency - lamp.frequency, 2);
+    mostDuty = std::max(mostDuty, std::abs(seen[0].features.duty - lamp.duty));
+  }
+  EXPECT_LT(std::sqrt(squares / phases), 0.15); // Hz; a line's mean, half of it clipped, is off by 0.5
+  EXPECT_LT(mostDuty, 0.001);
+}
+
 TEST(Luminaires, HotSpotHasTheOutlineOfItsRim)
 {
   for (const double aside : {0.0, 15.0, 30.0})
