@@ -17,6 +17,8 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
+const unsigned char nearlyWhite = 250; // grey value from which there may have been more light than it shows
+
 //! Samples of one line that lie inside the lamp.
 struct Chord {
   int line, first, last;
@@ -37,12 +39,11 @@ double meanOfDimmest(const unsigned char *row, const Chord &chord, double share)
 */
 double shareBelowWhite(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
 {
-  static const unsigned char nearlyWhite = 249;
   static const double small = 0.1;
   double share = 1;
   for (const Chord &chord : chords) {
     const int samples = chord.last - chord.first + 1,
-              white = vpBrighter::count(lines[chord.line] + chord.first, samples, nearlyWhite);
+              white = vpBrighter::count(lines[chord.line] + chord.first, samples, nearlyWhite - 1);
     share = std::min(share, 1 - static_cast<double>(white) / samples);
   }
   return std::max(share, small);
@@ -209,7 +210,6 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
     agreement.add(line, noise);
   }
   const double background = unclip(lines, chords, fit.background, noise, profile);
-  static const double nearlyWhite = 250; // grey value of a line that may have had more light than it shows
   profile.white = nearlyWhite - background - subtractDarkest(profile.light);
   profile.agreement = agreement.value();
   return profile;
