@@ -145,7 +145,7 @@ names, settled, seconds = sys.argv[1].split(","), float(sys.argv[2]), float(sys.
 truth, heard = {n: [] for n in names}, {n: [] for n in names}
 rospy.init_node("listener", disable_signals=True)
 for n in names:
-    rospy.Subscriber(f"/{n}/ground_truth", PoseStamped, lambda m, n=n: truth[n].append(
+    rospy.Subscriber(f"/{n.split('/')[0]}/ground_truth", PoseStamped, lambda m, n=n: truth[n].append(
         (m.header.stamp.to_sec(), m.pose.position.x, m.pose.position.y)))
     rospy.Subscriber(f"/{n}/location", PoseWithCovarianceStamped, lambda m, n=n: heard[n].append(
         (m.header.stamp.to_sec(), time.time(), m.pose.pose.position.x, m.pose.pose.position.y)))
@@ -154,7 +154,7 @@ begin = time.time()
 time.sleep(seconds)
 rows = {}
 for n in names:
-    errors, delays = [], []
+    errors, delays, at_stamp = [], [], {}
     truth[n].sort()
     for stamp, at, x, y in [h for h in heard[n] if h[1] >= begin]:
         i = bisect.bisect(truth[n], (stamp,))
@@ -162,8 +162,10 @@ for n in names:
             a, b = truth[n][i - 1], truth[n][i]
             s = (stamp - a[0]) / (b[0] - a[0])
             errors.append(((a[1] + s * (b[1] - a[1]) - x) ** 2 + (a[2] + s * (b[2] - a[2]) - y) ** 2) ** 0.5)
+            at_stamp[f"{stamp:.6f}"] = errors[-1]
         delays.append(at - stamp)
-    rows[n] = {"poses": len(delays), "errors": sorted(errors), "delays": sorted(delays), "end": truth[n][-1][1:]}
+    rows[n] = {"poses": len(delays), "errors": sorted(errors), "delays": sorted(delays), "at": at_stamp,
+               "end": truth[n][-1][1:]}
 print(json.dumps(rows))
 """
 
@@ -180,13 +182,16 @@ def listen(nodes, robots, host=None, master="127.0.0.1"):
     return json.loads(out.splitlines()[-1])
 
 
+def rms(errors):
+    return math.sqrt(sum(e * e for e in errors) / max(1, len(errors)))
+
+
 def row(name, heard):
     if not heard["delays"] or not heard["errors"]:
         return f"| {name} | 0 | - | - | - | - |"
     middle = heard["delays"][len(heard["delays"]) // 2]
     late = heard["delays"][int(0.95 * len(heard["delays"]))]
-    rms = (sum(e * e for e in heard["errors"]) / len(heard["errors"])) ** 0.5
-    return (f"| {name} | {heard['poses'] / SECONDS:.1f} | {1e3 * rms:.3f} | {1e3 * heard['errors'][-1]:.3f} "
+    return (f"| {name} | {heard['poses'] / SECONDS:.1f} | {1e3 * rms(heard['errors']):.3f} | {1e3 * heard['errors'][-1]:.3f} "
             f"| {1e3 * middle:.0f} | {1e3 * late:.0f} |")
 
 
@@ -243,14 +248,19 @@ def splits(build):
          {"simulator": robot, "CamKF": robot, "ID_recognition": pc, "vlc_locator": pc}),
         ("all on the robot", "raw", dict.fromkeys(("simulator", "CamKF", "ID_recognition", "vlc_locator"), robot)),
     )
-    print(HEADER[:HEADER.index("\n")] + " from the robot, Mbit/s | to it, Mbit/s | stands from the line's end, mm |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print(HEADER[:HEADER.index("\n")] + " from the robot, Mbit/s | to it, Mbit/s | stands from the line's end, mm | "
+          "one process, same pictures, rms, mm; the nodes' over its |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for name, transport, where in cases:
         link, nodes = Link(), Nodes(build)
         try:
             nodes.start("roscore", ["-p", "11397"], pc, Link.ADDRESSES[pc], "/usr/bin/roscore")
             time.sleep(5)
             nodes.robot("robot", where, Link.ADDRESSES[pc], transport)
+            nodes.start("vlp", ["__ns:=/robot", f"_rig:={DATA}/rigs/ub300-{SIZE}.yaml", f"_lamps:={LAMPS}",
+                                "_base_frame:=one"] + [f"{topic}:=one/{topic}" for topic in
+                                                       ("location", "vlp_location", "lamps", "path")],
+                        robot, Link.ADDRESSES[pc])
             before = {}
 
             def drive():
@@ -259,10 +269,13 @@ def splits(build):
                             where["vlc_locator"], Link.ADDRESSES[pc])
 
             threading.Timer(SETTLED, drive).start()
-            heard = listen(nodes, ["robot"], pc, Link.ADDRESSES[pc])["robot"]
+            both = listen(nodes, ["robot", "robot/one"], pc, Link.ADDRESSES[pc])
+            heard, one = both["robot"], both["robot/one"]["at"]
+            common = [stamp for stamp in heard["at"] if stamp in one]
+            own, other = rms([heard["at"][s] for s in common]), rms([one[s] for s in common])
             rate = {n: 8e-6 * (link.sent[n] - before[n]) / SECONDS for n in before}
-            print(row(name, heard), f"{rate[robot]:.2f} | {rate[pc]:.2f} | {1e3 * math.dist(heard['end'], LINE_END):.1f} |",
-                  flush=True)
+            print(row(name, heard), f"{rate[robot]:.2f} | {rate[pc]:.2f} | {1e3 * math.dist(heard['end'], LINE_END):.1f} "
+                  f"| {1e3 * other:.4f}; {own / other if other else math.nan:.2f} |", flush=True)
         finally:
             nodes.close()
             link.close()
