@@ -106,14 +106,15 @@ class Nodes:
         self.all.append((name, process))
         return process
 
-    def robot(self, robot, where, master="127.0.0.1", transport="raw", x=-0.35, y=0.0, size=SIZE):
-        """where: the network namespace of each node, None for this machine's."""
+    def robot(self, robot, where, master="127.0.0.1", transport="raw", x=-0.35, y=0.0, size=SIZE, quality=0):
+        """where: the network namespace of each node, None for this machine's. quality: of JPEG; 0 for PNG."""
         own = [f"__ns:=/{robot}", f"_rig:={DATA}/rigs/ub300-{size}.yaml", f"_lamps:={LAMPS}",
                f"_image_transport:={transport}"]
         scenario = os.path.join(self.logs.name, f"servo-{size}.yaml")
         with open(f"{DATA}/scenarios/servo.yaml") as file, open(scenario, "w") as copy:
             copy.write(file.read().replace("../", DATA + "/").replace(SIZE, size))
-        simulator = [f"__ns:=/{robot}", f"_scenario:={scenario}", f"_start_x:={x}", f"_start_y:={y}"]
+        simulator = [f"__ns:=/{robot}", f"_scenario:={scenario}", f"_start_x:={x}", f"_start_y:={y}",
+                     f"_jpeg_quality:={quality}"]
         for node, arguments in (("simulator", simulator), ("CamKF", own), ("ID_recognition", own),
                                 ("vlc_locator", own + [f"_base_frame:={robot}/base_link"])):
             self.start(node, arguments, where[node], master)
@@ -239,24 +240,23 @@ def sizes(build):
 
 def splits(build):
     robot, pc = "vlp-robot", "vlp-pc"
+    camera = {"simulator": robot, "CamKF": pc, "ID_recognition": pc, "vlc_locator": pc}
     cases = (
-        ("camera on the robot, the rest on the computer, raw", "raw",
-         {"simulator": robot, "CamKF": pc, "ID_recognition": pc, "vlc_locator": pc}),
-        ("the same, JPEG", "compressed",
-         {"simulator": robot, "CamKF": pc, "ID_recognition": pc, "vlc_locator": pc}),
-        ("tracker on the robot, ids and locator on the computer", "raw",
-         {"simulator": robot, "CamKF": robot, "ID_recognition": pc, "vlc_locator": pc}),
-        ("all on the robot", "raw", dict.fromkeys(("simulator", "CamKF", "ID_recognition", "vlc_locator"), robot)),
+        ("camera on the robot, the rest on the computer, PNG", "compressed", 0, camera),
+        ("the same, JPEG of quality 90", "compressed", 90, camera),
+        ("the same, raw", "raw", 0, camera),
+        ("tracker on the robot, ids and locator on the computer", "raw", 0, dict(camera, CamKF=robot)),
+        ("all on the robot", "raw", 0, dict.fromkeys(camera, robot)),
     )
     print(HEADER[:HEADER.index("\n")] + " from the robot, Mbit/s | to it, Mbit/s | stands from the line's end, mm | "
           "one process, same pictures, rms, mm; the nodes' over its |")
     print("|---|---|---|---|---|---|---|---|---|---|")
-    for name, transport, where in cases:
+    for name, transport, quality, where in cases:
         link, nodes = Link(), Nodes(build)
         try:
             nodes.start("roscore", ["-p", "11397"], pc, Link.ADDRESSES[pc], "/usr/bin/roscore")
             time.sleep(5)
-            nodes.robot("robot", where, Link.ADDRESSES[pc], transport)
+            nodes.robot("robot", where, Link.ADDRESSES[pc], transport, quality=quality)
             nodes.start("vlp", ["__ns:=/robot", f"_rig:={DATA}/rigs/ub300-{SIZE}.yaml", f"_lamps:={LAMPS}",
                                 "_base_frame:=one"] + [f"{topic}:=one/{topic}" for topic in
                                                        ("location", "vlp_location", "lamps", "path")],

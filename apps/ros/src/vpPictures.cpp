@@ -41,7 +41,7 @@ vpVlpFrame vpDecoded(const sensor_msgs::CompressedImage &image)
 vpPicturePublisher::vpPicturePublisher(ros::NodeHandle &nh, const ros::NodeHandle &own, const vpVlpRig &rig)
     : m_transport(nh), m_pictures(m_transport.advertiseCamera("camera/image", 1)),
       m_info(vpRosMessages::cameraInfo(rig)), m_frameId(own.param<std::string>("frame_id", "camera")),
-      m_quality(own.param("jpeg_quality", 90))
+      m_quality(own.param("jpeg_quality", 0))
 {
   if (m_quality < 0 || m_quality > 100) {
     throw vpException(vpException::badValue, own.resolveName("jpeg_quality") + ": " +
@@ -66,8 +66,10 @@ void vpPicturePublisher::publish(const vpVlpFrame &frame)
     image.format = m_quality > 0 ? "jpeg" : "png";
     const cv::Mat grey(static_cast<int>(frame.I.getHeight()), static_cast<int>(frame.I.getWidth()), CV_8UC1,
                        frame.I.bitmap);
+    // Of a noisy picture no run of bytes comes twice: codes by frequency alone are shorter and sooner found.
     const std::vector<int> jpeg = {cv::IMWRITE_JPEG_QUALITY, m_quality},
-                           png = {cv::IMWRITE_PNG_COMPRESSION, 1};
+                           png = {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
+                                  cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY};
     cv::imencode("." + image.format, grey, image.data, m_quality > 0 ? jpeg : png);
     m_compressed.publish(image);
   }

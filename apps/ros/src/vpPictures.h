@@ -19,7 +19,7 @@ vpVlpFrame vpDecoded(const sensor_msgs::CompressedImage &image);
 /*!
   Pictures of a camera: `camera/image` with `camera/camera_info`, and `camera/image/compressed`, which
   Debian's image_transport has no plugin for, as that plugin names it. What nobody listens to is not made. The
-  private parameter `jpeg_quality` (90) is that of the latter, 0 to 100; 0 makes PNG, which loses nothing.
+  private parameter `jpeg_quality` (0) is that of the latter, 0 to 100; 0 makes PNG, which loses nothing.
 */
 class vpPicturePublisher
 {
