@@ -247,16 +247,19 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;
   if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
     std::optional<vpWaveformFit> two = byAll.twoPulses();
+    vpPulseSearch *startOfTwo = &byAll;
     if (byPeriod && !(two && two->misfit() < vpPulseSearch::allExplained)) {
       std::optional<vpWaveformFit> other = byPeriod->twoPulses();
       if (other && (!two || other->cost() < two->cost())) {
         two = std::move(other);
+        startOfTwo = &*byPeriod;
       }
     }
     if (two && two->misfit() < maxMisfit && (!pwm || two->criterion() < pwm->criterion()) &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
       two->integrate();
       take(features, *two, true, middle);
+      start = startOfTwo;
     }
   }
   widen(features, profile, start->edgesAgree(features.signal == vpStripeFeatures::Signal::twoPulse));
