@@ -256,7 +256,7 @@ TEST(LedDetector, SaturatedLampKeepsIdAndPlace)
   ASSERT_TRUE(detector.detect(painted.render()));
   const vpLampObservation *seen = find(detector, "L2000");
   ASSERT_NE(seen, nullptr);
-  EXPECT_GT(seen->saturated, 0.3);
+  EXPECT_GT(seen->features.dutyClipped, 0);
   EXPECT_LT((seen->point - painted.lamps[0].centre).norm(), 0.5);
 }
 
@@ -274,7 +274,7 @@ TEST(LedDetector, ClippedStripesAreAsUncertainAsTheyAre)
     painted.lamps[0].amplitude = 700;
     vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
     detector.detect(painted.render());
-    if (detector.observations().size() != 1 || !(detector.observations()[0].saturated > 0.4) ||
+    if (detector.observations().size() != 1 || !(detector.observations()[0].features.dutyClipped > 0) ||
         !std::isfinite(detector.observations()[0].features.frequency)) {
       continue;
     }

@@ -79,40 +79,17 @@ std::vector<cv::Rect> joined(std::vector<cv::Rect> rects)
   return rects;
 }
 
-//! Lit pixels of a region, and the share of them at the end of the grey scale.
+//! Lit pixels of a region.
 void measureArea(const vpLinePicture &picture, const vpLedRoi &roi, vpLampObservation &lamp)
 {
-  static const unsigned char nearlyWhite = 254; // of JPEG's white, too
   const auto level = static_cast<unsigned char>(std::clamp(std::floor(roi.level), 0.0, 255.0));
-  int pixels = 0, white = 0;
+  int pixels = 0;
   for (const vpLedChord &chord : roi.chords) {
     const unsigned char *row = picture.grey[chord.line] + chord.first;
     const int samples = chord.last - chord.first + 1;
     pixels += vpBrighter::count(row, samples, level);
-    white += vpBrighter::count(row, samples, nearlyWhite - 1);
   }
   lamp.features.area = pixels;
-  lamp.saturated = pixels > 0 ? static_cast<double>(white) / pixels : 0;
-}
-
-/*!
-  Stripes that the grey scale cuts off seem longer, and their edges lie where it ends: what is known of them
-  is less certain than their noise says, and no frame to come makes it better.
-*/
-void inflateClipped(vpLampObservation &lamp)
-{
-  static const double harmless = 0.3, steep = 6; // share of the lit pixels; times, for each share beyond
-  const double times = 1 + steep * std::max(0.0, lamp.saturated - harmless);
-  vpStripeFeatures &features = lamp.features;
-  if (std::isnan(features.frequencyNoise)) {
-    features.frequencyNoise = features.frequencySigma;
-  }
-  features.dutySigma = std::hypot(features.dutySigma, lamp.clippedDuty());
-  features.frequencySigma *= times;
-  features.frequencyBound *= times;
-  for (vpDutySlice &slice : features.alongDuty) {
-    slice.frequencySigma *= times;
-  }
 }
 
 std::vector<vpImagePoint> cornersOf(const vpLampOutline &outline)
@@ -374,7 +351,6 @@ void vpLedDetector::read(const vpLinePicture &picture, Region &region) const
 {
   region.lamp.features = stripesOf(picture, region.fit, region.roi);
   measureArea(picture, region.roi, region.lamp);
-  inflateClipped(region.lamp);
 }
 
 //! Where a region's lamp is.

@@ -223,7 +223,7 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
   candidate.frequency = sent.repetitionFrequency();
   candidate.clock = 1e-6 * identifier.oscillatorPpm * candidate.frequency;
   // What all frames share is no smaller where the stripes are those of several.
-  const double error = std::hypot(dutyError, lamp.clippedDuty());
+  const double error = std::hypot(dutyError, seen.dutyClipped);
   vpDutyRidge::Reading reading = vpDutyRidge::of(seen, merged ? std::nullopt : sent.duty, error);
   if (merged) {
     const double sigma = std::hypot(reading.dutySigma, error);

@@ -116,6 +116,12 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
   return word;
 }
 
+//! Whether lit lines are as bright as the grey scale ends, or brighter.
+bool isClipped(const vpStripeProfile &profile)
+{
+  return *std::max_element(profile.light.begin(), profile.light.end()) >= profile.white;
+}
+
 //! What was fitted is not what it sends: a word is, where it is known.
 void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Found> &found)
 {
@@ -156,6 +162,12 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
       profile.time.size() < leastLines || features.misfit > most) {
     features.frequencySigma = std::max(features.frequencySigma, features.frequency);
   }
+  // A clipped line does not tell how bright it was, and so not how much of an edge is exposure: pulse and
+  // exposure are known together only.
+  if (isClipped(profile)) {
+    features.dutyClipped = profile.exposure * features.frequency;
+    features.dutySigma = std::hypot(features.dutySigma, features.dutyClipped);
+  }
   // An exposure of a period or more leaves a remainder of the stripes that other exposures, duties and
   // offsets would leave as well.
   static const double longExposure = 0.9; // periods
@@ -193,8 +205,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   vpPulseSearch *start = &byAll;
   std::optional<vpPulseSearch> evenly, byPeriod, byStripes;
   std::optional<vpWaveformFit> pwm = byAll.onePulse();
-  const bool clipped = *std::max_element(profile.light.begin(), profile.light.end()) >= profile.white;
-  if (order > 0 && !clipped) { // beyond the end of the grey scale nothing tells an even lamp
+  if (order > 0 && !isClipped(profile)) { // beyond the end of the grey scale nothing tells an even lamp
     evenly = byAll.evenly(pwm && pwm->misfit() < vpPulseSearch::allExplained, *this);
     std::optional<vpWaveformFit> other = evenly->onePulse();
     if (other && (!pwm || other->criterion() < pwm->criterion())) {

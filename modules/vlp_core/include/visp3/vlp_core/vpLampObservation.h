@@ -81,6 +81,7 @@ struct VISP_EXPORT vpStripeFeatures {
                                                 // in each frame; NaN: all of it
   double duty = std::numeric_limits<double>::quiet_NaN(); // lit share of the period
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
+  double dutyClipped = 0; // the part of dutySigma that lines at the grey scale's end leave, alike in all frames
   /*!
     Frequencies by duty, the shortest first, where they are known together only: near simple fractions of the
     rate of lines a short pulse may stay within one line over the whole lamp. Empty elsewhere.
@@ -120,7 +121,6 @@ struct VISP_EXPORT vpLampObservation {
   bool cut = false;     // the picture's border cuts the lamp
   double blur = 0;      // px, standard deviation of the spread of its edge; 0: it has none
   double noise = 0;     // grey levels, of pixels about its edge, standard deviation
-  double saturated = 0; // share of its lit pixels at the end of the grey scale
   double blinking =
       1; // share of the light inside its outline that has the modulation of its features; 0: none
   vpStripeFeatures features;
@@ -130,9 +130,6 @@ struct VISP_EXPORT vpLampObservation {
   unsigned int track = 0; // number of the lamp that was followed from frame to frame; 0: none
   bool accepted = false;  // counts for the position
   std::string remark;     // why it has no id or does not count; else empty
-
-  //! Standard deviation of the duty's error by saturation, the same error in all frames.
-  double clippedDuty() const { return 0.2 * saturated; }
 };
 
 END_VISP_NAMESPACE
