@@ -91,6 +91,7 @@ public:
     const vpHomogeneousMatrix off =
         lampScene::frame(m_random.normal(0.003), m_random.normal(0.003), m_random.normal(0.003), 0, 0, 0);
     filter.start(off * m_path(t) * lampScene::rotation({0, 0, m_random.normal(0.003)}), t);
+    filter.manoeuvreShare = 0.1;
   }
 
   //! A frame whose first line is at \e t.

@@ -318,7 +318,7 @@ TEST(FarFrames, FrameLinearisedAboutItsOwnPathIsAsGoodAsItSays)
     vpVlpFilter filter(drive.rig());
     filter.startTurnRate = 0.3; // what is of second order in the first frame's motion is not to count
     drive.start(filter);
-    filter.setManoeuvreShare(0);
+    filter.manoeuvreShare = 0;
     Drive first = drive;
     first.frame(filter, 0);
     filter.startAgain();
@@ -380,7 +380,7 @@ TEST(FarFrames, PointsThatAreOffAlikeInEveryFrameDoNotAverageOut)
       for (const vpLampSight &lamp : lamps) {
         filter.update(lamp);
       }
-      filter.setManoeuvreShare(0.002);
+      filter.manoeuvreShare = 0.002;
       filter.conclude();
     }
     mean.add(lampScene::nees(filter.now(), drive.truth(0)));

@@ -74,7 +74,6 @@ std::vector<Setting> settings()
       likely("decided", &H::decided),
       filtered("acceleration", &F::acceleration),
       filtered("turnAcceleration", &F::turnAcceleration),
-      filtered("startShare", &F::startShare),
       filtered("drift", &F::drift),
       filtered("startPlace", &F::startPlace),
       filtered("startTurn", &F::startTurn),

@@ -341,7 +341,7 @@ TEST(VlpFilter, CovarianceStaysSymmetricAndNotNegative)
       if (random.uniform(0, 1) < 0.5) {
         filter.update(drive.sight(lamp, t));
       }
-      filter.setManoeuvreShare(random.uniform(0, 1));
+      filter.manoeuvreShare = random.uniform(0, 1);
       const vpVlpFix now = filter.now(), marked = filter.marked();
       ASSERT_TRUE(symmetricAndNotNegative(now.covariance)) << k;
       ASSERT_TRUE(symmetricAndNotNegative(marked.covariance)) << k;
@@ -359,8 +359,8 @@ TEST(VlpFilter, MixtureHasTheMeanAndCovarianceOfItsParts)
     drive.frame(before, k * frameTime);
   }
   std::vector<vpVlpFilter> parts(2, before);
-  parts[0].setManoeuvreShare(0.002);
-  parts[1].allowManoeuvre();
+  parts[0].manoeuvreShare = 0.002;
+  parts[1].manoeuvreShare = 1;
   for (vpVlpFilter &part : parts) {
     drive.frame(part, 10 * frameTime);
   }

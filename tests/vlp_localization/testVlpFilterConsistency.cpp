@@ -75,7 +75,7 @@ Result drives(int count, double share, const Sigmas &sigmas)
     vpVlpFilter filter(drive.rig());
     settings(filter);
     drive.start(filter);
-    share > 0 ? filter.allowManoeuvre() : filter.setManoeuvreShare(0);
+    filter.manoeuvreShare = share > 0 ? 1 : 0;
     double t = 0;
     for (int k = 0; k < 10; ++k) {
       t = k * frameTime;
@@ -146,7 +146,7 @@ TEST(VlpFilterConsistency, OneLampAloneForLongTellsNothingThatItDoesNotShow)
       for (; k < 15; ++k) {
         drive.frame(filter, k * frameTime);
       }
-      filter.allowManoeuvre();
+      filter.manoeuvreShare = 1;
       double before = 0;
       for (; k < 60; ++k) {
         const double t = k * frameTime;
@@ -154,7 +154,7 @@ TEST(VlpFilterConsistency, OneLampAloneForLongTellsNothingThatItDoesNotShow)
         filter.update(drive.sight(0, t));
         const double heading = std::sqrt(filter.now().covariance(5, 5));
         if (steady) {
-          filter.setManoeuvreShare(0.03);
+          filter.manoeuvreShare = 0.03;
         } else { // nothing says that it goes on as before
           EXPECT_GT(heading, 0.97 * before) << k << ", seed " << seed;
         }
@@ -178,7 +178,7 @@ TEST(VlpFilterConsistency, StandingStillDoesNotAverageClaimsAway)
       1, [](double) { return vpHomogeneousMatrix(); }, claimed);
   vpVlpFilter filter(drive.rig());
   drive.start(filter);
-  filter.setManoeuvreShare(0);
+  filter.manoeuvreShare = 0;
   double after10 = 0;
   for (int k = 0; k < 200; ++k) {
     drive.frame(filter, k * frameTime);

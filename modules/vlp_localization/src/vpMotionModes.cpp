@@ -47,7 +47,7 @@ void vpMotionModes::apply(size_t mode, vpVlpFilter &filter) const
   filter.odometry = mode < alone    ? Odometry::ignored
                     : mode == alone ? Odometry::measured
                                     : Odometry::followed;
-  filter.setManoeuvreShare(shares[mode]);
+  filter.manoeuvreShare = shares[mode];
 }
 
 void vpMotionModes::predict(double dt, bool odometry)

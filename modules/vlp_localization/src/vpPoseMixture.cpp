@@ -8,8 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "vpLampGeometry.h"
 
 BEGIN_VISP_NAMESPACE
@@ -67,7 +65,7 @@ bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypothes
   for (size_t k = poseLamps; k < frame.lamps.size(); ++k) {
     const Eigen::Matrix2d wide =
         frame.lamps[k].sight.covariance + unknown * unknown * Eigen::Matrix2d::Identity();
-    most += k < moving ? -std::log(2 * M_PI) - 0.5 * std::log(wide.determinant()) : frame.lamps[k].logPeak;
+    most += k < moving ? logNormal(Eigen::Vector2d::Zero(), wide) : frame.lamps[k].logPeak;
   }
   double now = -1e300;
   for (const vpPoseHypothesis &place : m_places) {
@@ -175,10 +173,7 @@ bool vpPoseMixture::lost() const
 bool vpPoseMixture::lostAt(double time) const
 {
   return std::all_of(m_places.begin(), m_places.end(), [time](const vpPoseHypothesis &place) {
-    vpVlpFilter there = place.filter;
-    there.allowManoeuvre();
-    there.advance(time);
-    return there.state(there.pose()) == vpVlpFilter::State::lost;
+    return place.filter.state(place.filter.fixAt(time)) == vpVlpFilter::State::lost;
   });
 }
 

@@ -109,7 +109,6 @@ void vpVlpFilter::expect(const vpLampSight &lamp)
     m_offset.conservativeResizeLike(Vector::Zero(n + 3));
   }
   m_lamps.push_back(lamp.id);
-  m_placeSigmas.push_back(placeSigma(lamp));
 }
 
 vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
@@ -199,6 +198,23 @@ vpVlpFilter::Innovation vpVlpFilter::innovation(const vpLampSight &lamp, const P
     innovation.byPlace = predicted.byPlace;
   }
   return innovation;
+}
+
+/*!
+  What lamps' points scatter by, as a share of what they say: by the innovations of a calm robot, whose pose
+  rests on such points and is as good as they were (covariance matching, Mehra 1972).
+*/
+void vpVlpFilter::weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated)
+{
+  static const double calm = 0.03, noisy = 0.3; // share of the accelerations; of an innovation's variance
+  static const double priorPoints = 10;         // that the stated variance weighs as much as
+  static const double slowest = 0.02, outlying = 9, least = 0.25, most = 9;
+  if (manoeuvreShare > calm || m_noise * stated.trace() < noisy * seen.covariance.trace()) {
+    return;
+  }
+  const double excess = 0.5 * std::min(seen.distance(0), outlying) - 1;
+  const double gain = std::max(slowest, 1 / (priorPoints + ++m_weighed));
+  m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
 }
 
 void vpVlpFilter::update(const vpLampSight &lamp)
@@ -369,7 +385,7 @@ void vpVlpFilter::tellMarked(vpVlpFix &fix) const
 vpVlpFix vpVlpFilter::fixAt(double time) const
 {
   vpVlpFilter there = *this;
-  there.allowManoeuvre();
+  there.manoeuvreShare = 1;
   there.advance(time);
   return there.fixOf(x);
 }

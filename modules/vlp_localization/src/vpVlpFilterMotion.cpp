@@ -92,7 +92,7 @@ void vpVlpFilter::move(double dt, bool accelerates)
 
   const double t = std::abs(dt);
   static const double least = 0.01; // of the drift: lamps' outlines are not wrong anew in every frame
-  m_P(z, z) += vpMath::sqr(std::max(m_manoeuvreShare, least) * drift) * t;
+  m_P(z, z) += vpMath::sqr(std::max(manoeuvreShare, least) * drift) * t;
   if (freeAttitude) {
     m_P(roll, roll) += vpMath::sqr(tiltDrift) * t;
     m_P(pitch, pitch) += vpMath::sqr(tiltDrift) * t;
@@ -100,8 +100,8 @@ void vpVlpFilter::move(double dt, bool accelerates)
   }
   if (accelerates) {
     // Accelerations along x and y of b are alike, so that the heading does not matter.
-    const double a = vpMath::sqr(m_manoeuvreShare * acceleration),
-                 b = vpMath::sqr(m_manoeuvreShare * turnAcceleration);
+    const double a = vpMath::sqr(manoeuvreShare * acceleration),
+                 b = vpMath::sqr(manoeuvreShare * turnAcceleration);
     const double sign = dt < 0 ? -1 : 1;
     const Eigen::Matrix2d velocityPlace = sign * 0.5 * a * t * t * R.toRotationMatrix();
     m_P.block<2, 2>(x, x).diagonal().array() += a * t * t * t / 3;

@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// How vpVlpFilter begins, and begins again.
+// How vpVlpFilter begins, begins again, and mixes what comes of several hypotheses.
 
 #include <visp3/vlp_localization/vpVlpFilter.h>
 
@@ -18,24 +18,11 @@ BEGIN_VISP_NAMESPACE
 
 void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
 {
-  m_lamps.clear();
-  m_placeSigmas.clear();
-  startFrom(wMb, time);
-}
-
-void vpVlpFilter::restart(const vpHomogeneousMatrix &wMb, double time)
-{
-  startFrom(wMb, time);
-}
-
-//! Starts from a pose, with the lamps that the state has.
-void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
-{
   const vpBasePose pose = vpBasePose::of(wMb);
   m_started = true;
   m_time = time;
-  const auto n = lamps + 3 * static_cast<Eigen::Index>(m_lamps.size());
-  m_x.setZero(n);
+  m_lamps.clear();
+  m_x.setZero(lamps);
   m_x.head<3>() = pose.wtb;
   m_x(yaw) = std::atan2(pose.wRb(1, 0), pose.wRb(0, 0));
   m_x(roll) = freeAttitude ? std::atan2(pose.wRb(2, 1), pose.wRb(2, 2)) : 0;
@@ -60,21 +47,10 @@ void vpVlpFilter::startFrom(const vpHomogeneousMatrix &wMb, double time)
   const double point = m_rig.principalPointSigma ? *m_rig.principalPointSigma / m_rig.camera.get_px()
                                                  : (exact ? 0 : principalPoint);
   sigma.segment<3>(lens) << point, point, m_rig.focalLengthSigma.value_or(exact ? 0 : focalLength);
-  m_P.setZero(n, n);
-  m_P.diagonal().head<lamps>() = sigma.cwiseAbs2();
-  for (size_t k = 0; k < m_lamps.size(); ++k) {
-    m_P.diagonal()
-        .segment<3>(lamps + 3 * static_cast<Eigen::Index>(k))
-        .setConstant(vpMath::sqr(m_placeSigmas[k]));
-  }
-  m_manoeuvreShare = startShare;
-  for (int i : {vx, vy, w}) {
-    m_P(i, i) = vpMath::sqr(i == w ? startTurnRate : startVelocity);
-  }
+  sigma.segment<3>(vx) << startVelocity, startVelocity, startTurnRate;
+  m_P.setZero(lamps, lamps);
+  m_P.diagonal() = sigma.cwiseAbs2();
   m_aside = false;
-  m_offset.setZero(n);
-  m_PH.resize(n, 3);
-  m_K.resize(n, 3);
   m_common.setZero();
   m_startX = m_x;
   m_startP = m_P;
@@ -94,9 +70,7 @@ void vpVlpFilter::startAgain(bool odometryToo)
     m_odometry = m_startOdometry;
     m_followed = -1e300;
   }
-  const auto started = static_cast<size_t>((m_startP.rows() - lamps) / 3);
-  m_lamps.resize(started);
-  m_placeSigmas.resize(started);
+  m_lamps.clear();
   m_time = m_markTime;
   standAside(path);
 }
@@ -183,6 +157,30 @@ void vpVlpFilter::widenClaims()
 {
   m_extraTiltSigma = std::max(claimedTilt, 2 * m_extraTiltSigma);
   m_extraPlaceSigma = std::max(claimedPlace, 2 * m_extraPlaceSigma);
+}
+
+void vpVlpFilter::mix(const std::vector<const vpVlpFilter *> &parts, const std::vector<double> &weights)
+{
+  static thread_local Vector mean, apart; // kept, so that it takes no memory
+  static thread_local Matrix spread;
+  mean.setZero(m_x.size());
+  spread.setZero(m_x.size(), m_x.size());
+  for (size_t k = 0; k < parts.size(); ++k) {
+    apart = parts[k]->m_x - m_x;
+    for (const Index first : {x, mark0}) {
+      apart(first + yaw) = std::remainder(apart(first + yaw), 2 * M_PI);
+    }
+    mean += weights[k] * apart;
+    spread += weights[k] * parts[k]->m_P;
+    for (Eigen::Index column = 0; column < spread.cols(); ++column) {
+      spread.col(column) += weights[k] * apart(column) * apart;
+    }
+  }
+  m_P = spread;
+  for (Eigen::Index column = 0; column < m_P.cols(); ++column) {
+    m_P.col(column) -= mean(column) * mean;
+  }
+  m_x += mean;
 }
 
 END_VISP_NAMESPACE

@@ -7,14 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
-
 BEGIN_VISP_NAMESPACE
 
 const vpVlpFilter &vpVlpLocalizer::Scratch::predicted(const vpVlpFilter &filter, double time)
 {
   there = filter;
-  there.allowManoeuvre();
+  there.manoeuvreShare = 1;
   there.advance(time);
   return there;
 }
@@ -33,7 +31,7 @@ const vpLampFrame &vpVlpLocalizer::Scratch::frameOf(const vpVlpRig &rig, const v
     const vpLampObservation &seen = observations[i];
     if (const vpLamp *known = lamp(map, seen)) {
       vpLampSight sight = vpLampSight::from(*known, seen, rig.camera);
-      const double logPeak = -std::log(2 * M_PI) - 0.5 * std::log(sight.covariance.determinant());
+      const double logPeak = logNormal(Eigen::Vector2d::Zero(), sight.covariance);
       frame.lamps.push_back(
           {i, known, &seen, time + (compensateShutter ? seen.time : 0), std::move(sight), logPeak});
     }

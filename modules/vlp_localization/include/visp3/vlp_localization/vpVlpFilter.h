@@ -70,16 +70,17 @@ public:
 
   double acceleration = 0.5;   // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
   double turnAcceleration = 3; // rad/s^2/sqrt(Hz), likewise
-  double startShare = 0.1;     // of both from start() on, until allowManoeuvre() or setManoeuvreShare()
-  double drift = 0.002;        // m/sqrt(s), of z where the robot moves: a floor is not quite flat
-  double tiltDrift = 0.05;     // rad/sqrt(s), of roll and pitch where the attitude is free
-  double rollingTilt = 0.004;  // rad/sqrt(Hz), likewise between the plane of b and the way that it goes
-  double startPlace = 0.3;     // m, standard deviation of x, y and z at the start, before its lamps are seen
-  double startTurn = 0.3;      // rad, likewise of yaw
-  double startVelocity = 0.2;  // m/s, likewise
-  double startTurnRate = 1.5;  // rad/s, likewise
-  double odometrySpeed = 0.002;    // m/s, standard deviation of a sample; encoders count ticks
-  double odometryShare = 0.01;     // likewise as a share of speed and turn rate: wheels slip now and then
+  double manoeuvreShare =
+      1;                   // of both: less of a robot that keeps its velocity, all when it may start or stop
+  double drift = 0.002;    // m/sqrt(s), of z where the robot moves: a floor is not quite flat
+  double tiltDrift = 0.05; // rad/sqrt(s), of roll and pitch where the attitude is free
+  double rollingTilt = 0.004;   // rad/sqrt(Hz), likewise between the plane of b and the way that it goes
+  double startPlace = 0.3;      // m, standard deviation of x, y and z at the start, before its lamps are seen
+  double startTurn = 0.3;       // rad, likewise of yaw
+  double startVelocity = 0.2;   // m/s, likewise
+  double startTurnRate = 1.5;   // rad/s, likewise
+  double odometrySpeed = 0.002; // m/s, standard deviation of a sample; encoders count ticks
+  double odometryShare = 0.01;  // likewise as a share of speed and turn rate: wheels slip now and then
   double odometryTurnRate = 0.005; // rad/s, likewise
   double odometryScale = 0.02;     // standard deviation of the speed's scale: a slip that stays
   double odometryTurnScale = 0.01; // of the turn rate's scale
@@ -109,8 +110,6 @@ public:
     are to follow as updates.
   */
   void start(const vpHomogeneousMatrix &wMb, double time);
-  //! The same with the lamps that the state has, their errors as uncertain as at first: takes no memory.
-  void restart(const vpHomogeneousMatrix &wMb, double time);
   //! The same start once more, linearised, up to conclude(), about what the lamps since then have shown:
   //! their marked() pose and velocity. The lamps are to follow again, and so is the odometry \e odometryToo.
   void startAgain(bool odometryToo = false);
@@ -148,11 +147,6 @@ public:
   void expect(const vpLampSight &lamp);
   //! Corrects the state, its covariance in Joseph's form. \e lamp at time().
   void update(const vpLampSight &lamp);
-
-  //! The robot may start, stop or turn at any time.
-  void allowManoeuvre() { m_manoeuvreShare = 1; }
-  //! Its velocity is constant but for that share of the random accelerations.
-  void setManoeuvreShare(double share) { m_manoeuvreShare = share; }
 
   /*!
     Mean and covariance of a mixture. \param parts Copies of one filter that went on under different
@@ -275,7 +269,6 @@ private:
   void tell(Index first, vpVlpFix &fix) const;
   vpVlpFix fixOf(Index first) const;
   State stateOf(const Eigen::Matrix<double, 6, 6> &covariance) const;
-  void startFrom(const vpHomogeneousMatrix &wMb, double time);
   void standAside(const Eigen::Matrix<double, 9, 1> &path);
   void carryAlong(Index first, const Eigen::Vector2d &shift);
   void mirror();
@@ -299,7 +292,6 @@ private:
   Vector m_startX;                                    // m_x,
   Matrix m_startP;                                    // and m_P, at the start
   std::vector<std::string> m_lamps;                   // ids whose errors are states, in their order
-  std::vector<double> m_placeSigmas;                  // m, of each at the start
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
   std::vector<vpOdometry> m_startOdometry;            // m_odometry at the start
   std::vector<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
@@ -312,7 +304,6 @@ private:
   double m_imageSpeed = 0;                                 // px/s, of the fastest of them
   Eigen::Matrix4d m_common =
       Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
-  double m_manoeuvreShare = 1; // share of the random accelerations
   double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 
