@@ -6,13 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "vpLampConsensus.h"
 #include "vpLampGeometry.h"
-#include "vpLampNames.h"
-#include "vpLampWindows.h"
+#include "vpLampPicture.h"
 #include "vpPoseMixture.h"
 #include "vpVlpScratch.h"
 
@@ -33,6 +31,92 @@ void clear(vpVlpFix &fix)
   fix.residuals.clear();
   fix.chiSquare = 0;
   fix.degreesOfFreedom = 0;
+}
+
+size_t timesSeen(const std::string &id, const std::vector<vpLampObservation> &observations)
+{
+  return static_cast<size_t>(std::count_if(observations.begin(), observations.end(),
+                                           [&](const vpLampObservation &other) { return other.id == id; }));
+}
+
+//! Whether each of the \e usable ones is one lamp for sure: with an id, that no observation has besides it.
+bool namedApart(const std::vector<vpLampObservation> &observations, const std::vector<size_t> &usable)
+{
+  return std::all_of(usable.begin(), usable.end(), [&](size_t i) {
+    const std::string &id = observations[i].id;
+    return !id.empty() && timesSeen(id, observations) == 1;
+  });
+}
+
+/*!
+  Gives each lamp that \e match resolved its id, and keeps it in \e usable. Where the match is not unique,
+  keeps those that are one lamp for sure without it. Sets the remark of the others.
+*/
+void nameByPlace(const vpLampMatch &match, const vpLampMap &map, std::vector<vpLampObservation> &observations,
+                 std::vector<size_t> &usable)
+{
+  const bool unique = match.outcome == vpLampMatch::Outcome::unique;
+  std::vector<size_t> named;
+  for (size_t i : usable) {
+    vpLampObservation &lamp = observations[i];
+    const size_t times = lamp.id.empty() ? 0 : timesSeen(lamp.id, observations);
+    if (unique && match.lamps[i] != vpLampMatch::noLamp) {
+      lamp.id = map.lamps[match.lamps[i]].id;
+      lamp.confidence = match.probabilities[i];
+      lamp.remark.clear();
+      named.push_back(i);
+    } else if (unique) {
+      lamp.remark = (lamp.id.empty() ? "no lamp of the map hangs there: a reflection"
+                                     : "a reflection of lamp " + lamp.id) +
+                    ", or another lamp that blinks alike";
+    } else if (times == 1) {
+      named.push_back(i);
+    } else {
+      lamp.remark =
+          times == 0 ? match.refusal
+                     : "seen " + std::to_string(times) + " times, a reflection among them: " + match.refusal;
+    }
+  }
+  usable = named;
+}
+
+/*!
+  Adds to \e windows (px) where the picture shows the map's lamps while their lines are read, by the pose and
+  motion that the filter expects at the middle of the readout. \param lineTime s, from line to line.
+*/
+void expectWindows(const vpVlpFilter &filter, const vpLampMap &map, const vpVlpRig &rig, double lineTime,
+                   std::vector<vpRect> &windows)
+{
+  static const double farthest = 3;  // heights of a lamp above the camera
+  static const double unknown = 0.1; // rad: the lamps are then anywhere
+  const vpVlpFilter::Pose pose = filter.pose();
+  const double place = std::sqrt(std::max(pose.covariance(0, 0), pose.covariance(1, 1))),
+               turn = std::sqrt(pose.covariance(5, 5));
+  for (const vpLamp &lamp : map.lamps) {
+    const double height = lamp.position.z() - pose.wtc.z(),
+                 apart = std::hypot(lamp.position.x() - pose.wtc.x(), lamp.position.y() - pose.wtc.y());
+    if (!(height > 0 && apart < farthest * height && turn + place / height < unknown)) {
+      continue;
+    }
+    const vpLampPicture picture(lamp, {pose.wMb.linear(), pose.wMb.translation()}, rig);
+    if (!picture.inFront()) {
+      continue;
+    }
+    const Eigen::Vector2d extent = picture.extent(filter.velocity(), lineTime);
+    const Eigen::Vector2d motion = picture.motion(filter.velocity());
+    Eigen::Vector2d middle = picture.middle();
+    const int along = rig.shutter.alongColumns() ? 0 : 1;
+    const double lines = middle(along) - 0.5 * ((along == 0 ? rig.width : rig.height) - 1.0);
+    middle += motion * lineTime * lines / std::max(0.1, 1 - motion(along) * lineTime);
+    static const double sigmas = 3, around = 0.7; // of the extent, on each side
+    const double uncertain = sigmas * rig.camera.get_px() * (place + turn * apart) / height;
+    const Eigen::Vector2d half =
+        (std::isfinite(lamp.size) ? 0.5 + around : 0.2) * extent + Eigen::Vector2d(uncertain, uncertain);
+    const Eigen::Vector2d least = middle - half, most = middle + half;
+    if (most.minCoeff() > 0 && least.x() < rig.width - 1 && least.y() < rig.height - 1) {
+      windows.emplace_back(least.x(), least.y(), 2 * half.x(), 2 * half.y());
+    }
+  }
 }
 } // namespace
 
@@ -157,8 +241,8 @@ const std::vector<vpLampObservation> &vpVlpLocalizer::look(const vpVlpFrame &fra
     std::vector<vpRect> &windows = m_scratch->windows;
     windows.clear();
     if (filter.started()) {
-      vpLampWindows::expect(m_scratch->predicted(filter, frame.timestamp + m_scratch->halfReadout), m_map,
-                            m_rig, m_scratch->lineTime, windows);
+      expectWindows(m_scratch->predicted(filter, frame.timestamp + m_scratch->halfReadout), m_map, m_rig,
+                    m_scratch->lineTime, windows);
     }
     return tracker.track(frame, windows);
   }
