@@ -43,7 +43,7 @@ page()
   echo 'What `--help` says, as `apps/write-options.sh` copies it. [README.md](README.md) says what the programs do, and'
   echo '[data/README.md](../data/README.md) explains the files. Each program has `--help` and `--version`, too.'
   local program command
-  for program in vlp-plan vlp-calibrate vlp-locate vlp-servo vlp-simulate vlp-evaluate; do
+  for program in vlp-plan vlp-lamp vlp-calibrate vlp-locate vlp-servo vlp-simulate vlp-evaluate; do
     if [ "$program" = vlp-calibrate ]; then
       for command in camera shutter mount lamps; do
         table "$program" "$command"

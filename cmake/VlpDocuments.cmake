@@ -9,7 +9,8 @@ if(VLP_BUILD_PROGRAMS AND HELP2MAN)
   set(pages)
   foreach(page "vlp-locate|poses from pictures of blinking lamps" "vlp-simulate|a scenario to frames with ground truth"
                "vlp-evaluate|poses held against the truth" "vlp-servo|drives a robot along a path by blinking lamps"
-               "vlp-calibrate|camera, shutter, mount and lamps from pictures" "vlp-plan|how lamps should blink")
+               "vlp-calibrate|camera, shutter, mount and lamps from pictures" "vlp-plan|how lamps should blink"
+               "vlp-lamp|tells lamps how to blink")
     string(REPLACE "|" ";" page "${page}")
     list(GET page 0 program)
     list(GET page 1 purpose)

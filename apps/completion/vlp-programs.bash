@@ -12,4 +12,4 @@ _vlp_calibrate()
   fi
 }
 complete -F _vlp_calibrate vlp-calibrate
-complete -F _longopt vlp-locate vlp-simulate vlp-evaluate vlp-servo vlp-plan
+complete -F _longopt vlp-locate vlp-simulate vlp-evaluate vlp-servo vlp-plan vlp-lamp

@@ -25,7 +25,7 @@ class vpProcess
 {
 public:
   explicit vpProcess(const std::string &program, const std::vector<std::string> &arguments = {},
-                     const std::string &stdoutFile = "")
+                     const std::string &stdoutFile = "", const std::string &stdinFile = "/dev/null")
   {
     std::vector<std::string> words = {VLP_EMULATOR};
     words.push_back(std::string(VLP_BIN_DIR) + "/" + program);
@@ -39,7 +39,7 @@ public:
     const std::string out = stdoutFile.empty() ? m_folder / "out" : stdoutFile, err = m_folder / "err";
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, stdinFile.c_str(), O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
     posix_spawnattr_t attributes; // Ctrl-C works even where the tests run in the background

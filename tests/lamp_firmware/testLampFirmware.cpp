@@ -213,6 +213,25 @@ TEST(LampFirmware, KeepsWhatItWasToldWithoutPower)
   }
 }
 
+TEST(LampFirmware, AWrongChecksumLeavesTheProgramBefore)
+{
+  vpSimulatedArduino lamp(VLP_LAMP_FIRMWARE);
+  lamp.run(started);
+  const std::string before = lamp.ask("set frequency_hz=1000 duty=0.25 id=before");
+  const vpSimulatedArduino::Eeprom old = lamp.eeprom();
+  lamp.ask("set bits=0111 chip_rate_hz=8000 code=ook id=after");
+  const vpSimulatedArduino::Eeprom both = lamp.eeprom();
+  for (size_t k = 0; k < both.size(); ++k) {
+    if (both[k] != old[k]) {
+      vpSimulatedArduino::Eeprom broken = both;
+      broken[k] ^= 0x10;
+      vpSimulatedArduino again(VLP_LAMP_FIRMWARE, broken);
+      again.run(started);
+      EXPECT_EQ(again.ask("show"), before) << "byte " << k;
+    }
+  }
+}
+
 //! Each save has a number of eight bits.
 TEST(LampFirmware, TheLastOfManyProgramsCounts)
 {

@@ -22,7 +22,8 @@
 
 BEGIN_VISP_NAMESPACE
 
-vpSerialTransport::vpSerialTransport(const std::string &device) : m_device(device)
+vpSerialTransport::vpSerialTransport(const std::string &device, unsigned int baud)
+    : m_device(device), m_baud(baud)
 {
   open();
 }
@@ -64,8 +65,8 @@ void vpSerialTransport::setRaw()
   settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
   settings.c_cc[VMIN] = 0;
   settings.c_cc[VTIME] = 0;
-  if (cfsetspeed(&settings, B1000000) != 0 || tcsetattr(m_file, TCSANOW, &settings) != 0) {
-    fail("does not take 1000000 baud", errno);
+  if (cfsetspeed(&settings, m_baud) != 0 || tcsetattr(m_file, TCSANOW, &settings) != 0) {
+    fail("does not take " + std::to_string(m_baud) + " baud", errno);
   }
   const int rts = TIOCM_RTS;
   ioctl(m_file, TIOCMBIC, &rts); // a pseudo-terminal has no such line

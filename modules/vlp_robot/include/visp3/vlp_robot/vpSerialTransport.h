@@ -10,15 +10,16 @@
 BEGIN_VISP_NAMESPACE
 
 /*!
-  A serial device, 1 000 000 baud, 8N1, raw, no flow control, for this process alone. For an OpenCR board on
-  USB it is the kernel's /dev/ttyACM0, which sets DTR and RTS as it opens the line; RTS is cleared at once,
-  for it arms the board's jump into its bootloader.
+  A serial device, 8N1, raw, no flow control, for this process alone. For an OpenCR board on USB it is the
+  kernel's /dev/ttyACM0, which sets DTR and RTS as it opens the line; RTS is cleared at once, for it arms the
+  board's jump into its bootloader.
 */
 class VISP_EXPORT vpSerialTransport : public vpByteTransport
 {
 public:
-  //! \throw vpException (ioError) where the device cannot be opened, is none, or is in use.
-  explicit vpSerialTransport(const std::string &device);
+  //! \param baud One of termios' speeds. \throw vpException (ioError) where the device cannot be opened, is
+  //! none, or is in use.
+  explicit vpSerialTransport(const std::string &device, unsigned int baud = 1000000);
   ~vpSerialTransport() override;
 
   bool write(const std::uint8_t *bytes, size_t size, double deadline) override;
@@ -35,6 +36,7 @@ private:
   [[noreturn]] void fail(const std::string &what, int error) const;
 
   std::string m_device;
+  unsigned int m_baud;
   int m_file = -1;
 };
 
