@@ -5,6 +5,7 @@
 #include "vpPlanOptions.h"
 
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include <CLI/CLI.hpp>
@@ -32,6 +33,8 @@ Examples:
     vlp-plan --rig rig.yaml --place surveyed.yaml --oscillator rc --error 1e-5 --out lamps.yaml
   a hall of many lamps with 20 identifiers, laid so that three lamps in view say where the robot is
     vlp-plan --rig rig.yaml --place surveyed.csv --diameter 0.175 --reuse 20 --out lamps.yaml
+  lamps that an Arduino drives, whose ceramic resonator is off by 5000 ppm
+    vlp-plan --rig rig.yaml --heights 1.2:2.5 --diameter 0.175 --lamps 8 --clock 16e6 --oscillator resonator
   words of 14 bits instead of one frequency each
     vlp-plan --rig rig.yaml --heights 1.2:1.5 --diameter 0.175 --words --chip-rate 8000 --out lamps.yaml
   which lamps of a map are the easiest to confuse?
@@ -83,12 +86,14 @@ void readRange(const std::string &option, const std::string &text, const char *u
 double oscillatorOf(const std::string &text)
 {
   double ppm = 0;
-  if (text == "crystal" || text == "rc") {
-    return text == "rc" ? 10000 : 50;
+  static const std::map<std::string, double> kinds = {{"crystal", 50}, {"resonator", 5000}, {"rc", 10000}};
+  if (const auto kind = kinds.find(text); kind != kinds.end()) {
+    return kind->second;
   }
   if (!vpParseNumber(text, ppm) || !std::isfinite(ppm) || ppm < 0) {
-    vpBadInput("--oscillator: " + vpShown(text) +
-               ", expected crystal (50 ppm), rc (10000 ppm) or a number of ppm from 0 up");
+    vpBadInput(
+        "--oscillator: " + vpShown(text) +
+        ", expected crystal (50 ppm), resonator (5000 ppm), rc (10000 ppm) or a number of ppm from 0 up");
   }
   return ppm;
 }
@@ -124,14 +129,16 @@ bool vpPlanOptions::parse(int argc, char **argv)
   app.footer(footer);
   app.get_formatter()->column_width(28);
   std::string heights, size, oscillator = "crystal", wrong, snr, dutyList, frequencies, chipRate, view,
-                             code = "manchester";
+                             timers, code = "manchester";
   size_t bits = format.bits, apart = format.minDistance;
   vpAddInput(app, "--rig", rig, "FILE", "the camera on the robot");
   vpAddName(app, "--heights", heights, "FROM:TO", "m, how far above the camera the lamps will hang");
   vpAddName(app, "--diameter", size, "M",
             "of the lamps, or side of square ones; of those without one in a map");
-  vpAddName(app, "--oscillator", oscillator, "crystal|rc|PPM",
-            "standard deviation of the lamps' clocks: 50 ppm (default), 10000 ppm, or as said");
+  vpAddName(app, "--oscillator", oscillator, "crystal|resonator|rc|PPM",
+            "standard deviation of the lamps' clocks: 50 ppm (default), 5000, 10000, or as said");
+  vpAddName(app, "--clock", timers, "HZ",
+            "of the lamps' timers, as 16e6: only what whole cycles of it make; default: any frequency");
   vpAddCount(app, "--lamps", lamps,
              "how many identifiers to choose, as far apart as can be; default: all there are");
   vpAddName(app, "--error", wrong, "P", "probability of taking a lamp for another one; default 0.001");
@@ -173,6 +180,7 @@ bool vpPlanOptions::parse(int argc, char **argv)
   readNumber("--diameter", size, 0, INFINITY, "a number of metres above 0", diameter);
   readNumber("--error", wrong, 0, 0.5, "a probability above 0 and below 0.5", error);
   readNumber("--snr-db", snr, -100, 200, "a number of dB, as 20", snrDb);
+  readNumber("--clock", timers, 1e4, 1e10, "a number of Hz from 10 kHz to 10 GHz", clock);
   readNumber("--view-radius", view, 0, INFINITY, "a number of metres above 0", viewRadius);
   readNumber("--chip-rate", chipRate, 0, INFINITY, "a number of Hz above 0", format.chipRate);
   oscillatorPpm = oscillatorOf(oscillator);
@@ -239,6 +247,7 @@ vpLedIdPlanner vpPlanOptions::planner(const vpVlpRig &camera) const
   planner.prediction.snrDb = snrDb;
   planner.maxError = error;
   planner.duties = duties;
+  planner.clock = clock;
   planner.lowestFrequency = lowestFrequency;
   planner.highestFrequency = highestFrequency;
   return planner;

@@ -23,6 +23,7 @@ struct vpPlanOptions {
   double lowest = std::nan(""), highest = std::nan(""); // m, of the lamps above the camera; NaN: not given
   double diameter = std::nan("");                       // m; NaN: not given
   double oscillatorPpm = 50;
+  double clock = 0;                 // Hz, of the lamps' timers; 0: any frequency can be made
   size_t lamps = 0;                 // 0: as many as there is room for
   size_t reuse = 0;                 // identifiers for all lamps of the place; 0: each its own
   double viewRadius = std::nan(""); // m, of what one picture shows of the ceiling; NaN: as the rig says

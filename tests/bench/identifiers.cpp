@@ -103,6 +103,20 @@ int main(int argc, char **argv)
   run({"800x600 nearest, all that the planner finds", nearest, rowTimeSigma, 1,
        vpMapOf(small.largest(nearest.lines, crystal).identifiers)},
       frames);
+  static const double arduino = 16e6;   // Hz, of its timers
+  for (double ppm : {crystal, 5000.}) { // its ceramic resonator
+    for (vpLedIdPlanner planner : {large, small}) {
+      planner.clock = arduino;
+      const bool whole = planner.highest() == large.highest();
+      vpSimulatedStripes stripes = whole ? full : nearest;
+      stripes.oscillator = ppm;
+      char name[80];
+      std::snprintf(name, sizeof name, "%s, clock of 16 MHz, %g ppm", whole ? "2048x1536" : "800x600 nearest",
+                    ppm);
+      run({name, stripes, rowTimeSigma, 1, vpMapOf(planner.largest(stripes.lines, ppm).identifiers, ppm)},
+          frames);
+    }
+  }
   for (const vpLampMap *map : {&fifty, &fiveHundred}) {
     for (double known : {1e-3, 1e-2}) {
       for (int inView : {1, 2, 4}) {

@@ -55,14 +55,15 @@ struct vpSimulatedStripes {
   }
 };
 
-//! Lamps that blink like this, their ids their numbers.
-inline vpLampMap vpMapOf(const std::vector<vpModulation> &identifiers)
+//! Lamps that blink like this, their ids their numbers. \param oscillator ppm.
+inline vpLampMap vpMapOf(const std::vector<vpModulation> &identifiers, double oscillator = 50)
 {
   vpLampMap map;
   for (const vpModulation &modulation : identifiers) {
     vpLamp lamp;
     lamp.id = std::to_string(map.lamps.size());
     lamp.modulation = modulation;
+    lamp.oscillatorPpm = oscillator;
     map.lamps.push_back(lamp);
   }
   return map;

@@ -115,6 +115,25 @@ TEST(LedIdPlanner, CapacityGrowsWithLinesAndSnrAndFallsWithTheClock)
   EXPECT_GT(planner.capacities(57, {crystal})[0], noisy);
 }
 
+TEST(LedIdPlanner, AClockMakesEachOfItsFrequencies)
+{
+  static const double clock = 16e6, hertz = 0.5e-3; // Hz; to the millihertz
+  vpLedIdPlanner planner(rigOf(resized));
+  const size_t any = planner.largest(57, crystal).identifiers.size();
+  planner.clock = clock;
+  const std::vector<vpModulation> all = planner.largest(57, crystal).identifiers;
+  EXPECT_GE(all.size(), 0.97 * static_cast<double>(any));
+  for (const vpModulation &lamp : all) {
+    EXPECT_NEAR(lamp.frequency, clock / std::round(clock / lamp.frequency), hertz);
+  }
+  for (const vpModulation &lamp : planner.spread(57, crystal, 20).identifiers) {
+    EXPECT_NEAR(lamp.frequency, clock / std::round(clock / lamp.frequency), hertz);
+  }
+  vpWordScheme format;
+  format.chipRate = 7777;
+  EXPECT_NEAR(planner.words(146, format).words.at(0).chipRate, clock / std::round(clock / 7777), hertz);
+}
+
 TEST(LedIdPlanner, HoldsWhatIsAskedForOfIt)
 {
   vpLedIdPlanner full(rigOf(fullSize)), small(rigOf(resized));
@@ -291,6 +310,9 @@ TEST(LedIdPlanner, BadSettingsAreRefused)
   planner.duties.clear();
   vpExpectError([&] { planner.capacities(146, {crystal}); }, {"duties: number of them: 0"});
   planner.duties = {0.5};
+  planner.clock = -1;
+  vpExpectError([&] { planner.spread(146, crystal, 3); }, {"clock: -1", "expected a number of Hz"});
+  planner.clock = 0;
   vpWordScheme format;
   format.bits = 6;
   vpExpectError([&] { planner.words(146, format); }, {"bits: 6, expected 7 to 18"});

@@ -63,9 +63,14 @@ vpFrequencyRows::Row vpFrequencyRows::rowOf(const vpLedIdPlanner &planner, doubl
       below = above;
       above = planner.prediction.shapeSigma(vpPwmLamp(end, duty), lines);
     }
-    const vpStripeUncertainty sigma = planner.prediction.together(vpPwmLamp(n * step, duty), lines, 0,
+    const double frequency = planner.made(n * step);
+    if (frequency > highest * (1 + rounding) ||
+        (!row.candidates.empty() && !(frequency > row.candidates.back().frequency))) {
+      continue;
+    }
+    const vpStripeUncertainty sigma = planner.prediction.together(vpPwmLamp(frequency, duty), lines, 0,
                                                                   below.duty > above.duty ? below : above);
-    row.candidates.push_back({n * step, sigma.frequency, sigma.duty});
+    row.candidates.push_back({frequency, sigma.frequency, sigma.duty});
   }
   return row;
 }

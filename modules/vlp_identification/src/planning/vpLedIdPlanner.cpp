@@ -192,6 +192,7 @@ void vpLedIdPlanner::checkSettings() const
   }
   demand(std::isfinite(frequencyStep) && frequencyStep > 0, "frequency step", frequencyStep,
          "a number of Hz above 0");
+  demand(std::isfinite(clock) && clock >= 0, "clock", clock, "a number of Hz from 0 up");
   demand(std::isfinite(prediction.snrDb), "SNR", prediction.snrDb, "a finite number of dB");
   demand(prediction.margin > 0, "margin", prediction.margin, "a number above 0");
 }
@@ -210,6 +211,12 @@ double vpLedIdPlanner::highest() const
     return std::min(highestFrequency, prediction.fold());
   }
   return std::min(prediction.frequencyOfContrast(leastContrast), foldShare * prediction.fold());
+}
+
+double vpLedIdPlanner::made(double rate) const
+{
+  static const double perHertz = 1000;
+  return clock > 0 ? std::round(perHertz * clock / std::round(clock / rate)) / perHertz : rate;
 }
 
 double vpLedIdPlanner::refusedByGates() const

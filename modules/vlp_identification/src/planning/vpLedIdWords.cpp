@@ -104,10 +104,12 @@ void judge(vpWordPlan &plan, const std::vector<vpWordCode> &codes, double distan
 }
 } // namespace
 
-vpWordPlan vpLedIdPlanner::words(double lines, const vpWordScheme &format) const
+vpWordPlan vpLedIdPlanner::words(double lines, const vpWordScheme &asked) const
 {
   checkSettings();
-  check(format);
+  check(asked);
+  vpWordScheme format = asked;
+  format.chipRate = made(asked.chipRate);
   vpWordPlan plan;
   const double chips = format.bits * (format.code == vpModulation::Code::manchester ? 2. : 1.);
   plan.linesPerChip = 1 / (format.chipRate * prediction.lineTime());

@@ -104,7 +104,9 @@ public:
   double flicker = 500; // Hz, above which people see no flicker, even where eye or lamp moves
   double leastContrast = 0.2;
   double foldShare = 0.9;
-  double frequencyStep = 1; // Hz: frequencies are multiples of this
+  double frequencyStep =
+      1;            // Hz: frequencies are multiples of this, or the nearest to them that `clock` makes
+  double clock = 0; // Hz, of the lamps' timers: a period, or a chip, is a whole number of cycles; 0: any is
 
   //! \throw vpException (badValue) as vpStripePrediction.
   explicit vpLedIdPlanner(const vpVlpRig &rig) : prediction(rig), m_cameraHeight(rig.bMc[2][3]) {}
@@ -112,6 +114,9 @@ public:
   //! Range of frequencies (Hz) for lamps of so many lines; it may be empty, lowest above highest.
   double lowest(double lines) const;
   double highest() const;
+
+  //! The rate (Hz, of periods or chips) nearest to \e rate that the clock makes, to the millihertz.
+  double made(double rate) const;
 
   //! Distance (standard deviations) that neighbours need who may cause so great a share of error and refusal.
   double neededDistance(double share = 1) const;
