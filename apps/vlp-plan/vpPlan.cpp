@@ -16,6 +16,7 @@
 
 #include "common/vpInterrupt.h"
 #include "vpLampPlaces.h"
+#include "vpLampTimer.h"
 #include "vpPlanPicture.h"
 #include "vpPlanReuse.h"
 #include "vpPlanText.h"
@@ -207,8 +208,17 @@ vpExitCode vpPlan(const vpPlanOptions &options)
     return vpPlanCheck(options);
   }
   const vpVlpRig rig = vpVlpRig::load(options.rig);
-  const vpLedIdPlanner planner = options.planner(rig);
+  vpLedIdPlanner planner = options.planner(rig);
   const Seen seen = seenBy(rig, planner, options);
+  vpLampTimer timer;
+  unsigned int prescaler = 1;
+  if (!options.timers.empty()) {
+    timer = vpLampTimer::named(options.timers);
+    timer.clock = options.clock > 0 ? options.clock : timer.clock;
+    prescaler =
+        timer.prescalerFor(options.words ? options.format.chipRate : planner.lowest(seen.lines.front()));
+    planner.clock = timer.clock / prescaler;
+  }
   const Choice choice =
       options.words ? chooseWords(planner, options, seen) : chooseFrequencies(planner, options, seen);
   if (!choice.refusal.empty()) {
@@ -233,6 +243,9 @@ vpExitCode vpPlan(const vpPlanOptions &options)
   print(seen, choice.table);
   if (filled.laid) {
     std::cout << "\n" << filled.laid->text();
+  }
+  if (!options.timers.empty()) {
+    std::cout << "\n" << timer.registers(filled.places.map, prescaler).text();
   }
   return vpExitCode::done;
 }

@@ -14,6 +14,7 @@
 
 #include "common/vpCommandLine.h"
 #include "common/vpProgram.h"
+#include "vpLampTimer.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -35,6 +36,8 @@ Examples:
     vlp-plan --rig rig.yaml --place surveyed.csv --diameter 0.175 --reuse 20 --out lamps.yaml
   lamps that an Arduino drives, whose ceramic resonator is off by 5000 ppm
     vlp-plan --rig rig.yaml --heights 1.2:2.5 --diameter 0.175 --lamps 8 --clock 16e6 --oscillator resonator
+  lamps that timers of an STM32 drive, and what to write into their registers
+    vlp-plan --rig rig.yaml --heights 1.2:2.5 --diameter 0.175 --lamps 8 --timers stm32 --out lamps.yaml
   words of 14 bits instead of one frequency each
     vlp-plan --rig rig.yaml --heights 1.2:1.5 --diameter 0.175 --words --chip-rate 8000 --out lamps.yaml
   which lamps of a map are the easiest to confuse?
@@ -129,7 +132,7 @@ bool vpPlanOptions::parse(int argc, char **argv)
   app.footer(footer);
   app.get_formatter()->column_width(28);
   std::string heights, size, oscillator = "crystal", wrong, snr, dutyList, frequencies, chipRate, view,
-                             timers, code = "manchester";
+                             clockText, code = "manchester";
   size_t bits = format.bits, apart = format.minDistance;
   vpAddInput(app, "--rig", rig, "FILE", "the camera on the robot");
   vpAddName(app, "--heights", heights, "FROM:TO", "m, how far above the camera the lamps will hang");
@@ -137,8 +140,10 @@ bool vpPlanOptions::parse(int argc, char **argv)
             "of the lamps, or side of square ones; of those without one in a map");
   vpAddName(app, "--oscillator", oscillator, "crystal|resonator|rc|PPM",
             "standard deviation of the lamps' clocks: 50 ppm (default), 5000, 10000, or as said");
-  vpAddName(app, "--clock", timers, "HZ",
+  vpAddName(app, "--clock", clockText, "HZ",
             "of the lamps' timers, as 16e6: only what whole cycles of it make; default: any frequency");
+  vpAddChoice(app, "--timers", timers, vpLampTimer::names(),
+              "print the registers of such timers for each lamp, and plan what they make; --clock: theirs");
   vpAddCount(app, "--lamps", lamps,
              "how many identifiers to choose, as far apart as can be; default: all there are");
   vpAddName(app, "--error", wrong, "P", "probability of taking a lamp for another one; default 0.001");
@@ -180,7 +185,7 @@ bool vpPlanOptions::parse(int argc, char **argv)
   readNumber("--diameter", size, 0, INFINITY, "a number of metres above 0", diameter);
   readNumber("--error", wrong, 0, 0.5, "a probability above 0 and below 0.5", error);
   readNumber("--snr-db", snr, -100, 200, "a number of dB, as 20", snrDb);
-  readNumber("--clock", timers, 1e4, 1e10, "a number of Hz from 10 kHz to 10 GHz", clock);
+  readNumber("--clock", clockText, 1e4, 1e10, "a number of Hz from 10 kHz to 10 GHz", clock);
   readNumber("--view-radius", view, 0, INFINITY, "a number of metres above 0", viewRadius);
   readNumber("--chip-rate", chipRate, 0, INFINITY, "a number of Hz above 0", format.chipRate);
   oscillatorPpm = oscillatorOf(oscillator);

@@ -24,6 +24,7 @@ struct vpPlanOptions {
   double diameter = std::nan("");                       // m; NaN: not given
   double oscillatorPpm = 50;
   double clock = 0;                 // Hz, of the lamps' timers; 0: any frequency can be made
+  std::string timers;               // kind of them, whose registers are printed; empty: none
   size_t lamps = 0;                 // 0: as many as there is room for
   size_t reuse = 0;                 // identifiers for all lamps of the place; 0: each its own
   double viewRadius = std::nan(""); // m, of what one picture shows of the ceiling; NaN: as the rig says

@@ -96,6 +96,24 @@ TEST_F(VlpPlan, WritesAMapThatReadsBack)
   EXPECT_NE(check.out().find("  0 nearer than an error of 0.001"), std::string::npos);
 }
 
+TEST_F(VlpPlan, PlansWhatATimerMakes)
+{
+  for (const auto &[timer, clock] : {std::pair<std::string, double>{"avr", 16e6}, {"stm32", 24e6}}) {
+    SCOPED_TRACE(timer);
+    vpProcess plan("vlp-plan", with({"--lamps", "5", "--timers", timer, "--out", folder / timer}));
+    EXPECT_EQ(plan.wait(), done) << plan.err();
+    for (const vpLamp &lamp : vpLampMap::load(folder / timer).lamps) {
+      const double cycles = std::round(clock / lamp.modulation.frequency),
+                   lit = std::round(*lamp.modulation.duty * cycles);
+      EXPECT_NEAR(lamp.modulation.frequency, clock / cycles, 0.5e-3);
+      const std::string row = valueIn(plan.out(), lamp.id);
+      EXPECT_NE(row.find(" " + std::to_string(std::lround(cycles) - 1) + " "), std::string::npos) << row;
+      const long compare = std::lround(lit) - (timer == "avr" ? 1 : 0);
+      EXPECT_EQ(row.substr(row.rfind(' ') + 1), std::to_string(compare)) << row;
+    }
+  }
+}
+
 TEST_F(VlpPlan, KeepsPlacesAndIds)
 {
   const std::string csv = folder.write("places.csv", "id,x_m,y_m,z_m\nhall,1,2,1.6\ndoor,-1,0.5,1.5\n");
@@ -234,6 +252,10 @@ TEST_F(VlpPlan, BadUsageIsOneClearLine)
   }
   expectOneLine(with({"--oscillator", "quartz"}), badInput,
                 {"--oscillator: quartz, expected crystal (50 ppm)"});
+  expectOneLine(with({"--clock", "fast"}), badInput, {"--clock: fast, expected a number of Hz"});
+  expectOneLine(with({"--timers", "pic"}), badInput, {"--timers: pic, expected avr|stm32"});
+  expectOneLine(with({"--timers", "rp2040", "--clock", "9e9"}), badInput,
+                {"--timers: rp2040 does not reach 500 Hz"});
   for (const std::string duties : {"0.5,1", "0", "0.2,0.2", "0.2,,0.5", "half"}) {
     expectOneLine(with({"--duties", duties}), badInput, {"--duties: " + duties + ", expected up to 8"});
   }
