@@ -19,7 +19,7 @@ namespace
 {
 const double mostCycles = 65536; // of a period: 16 bits
 
-std::vector<unsigned int> upTo(unsigned int most)
+std::vector<unsigned int> oneTo(unsigned int most)
 {
   std::vector<unsigned int> all(most);
   std::iota(all.begin(), all.end(), 1);
@@ -35,10 +35,10 @@ std::string whole(double value)
 const std::vector<vpLampTimer> &timers()
 {
   static const std::vector<vpLampTimer> all = {
-      {"avr", 16e6, "clock / ", "ICR1", "OCR1A", {1, 8, 64, 256, 1024}},     // timer 1, fast PWM, mode 14
-      {"stm32", 72e6, "PSC = -1 + ", "ARR", "CCR1", upTo(65536)},            // general purpose, PWM mode 1
-      {"rp2040", 125e6, "DIV = ", "TOP", "CC", upTo(255)},                   // PWM slice, whole dividers
-      {"esp32", 160e6, "prescale = -1 + ", "period", "compare", upTo(256)}}; // MCPWM, counting up
+      {"avr", 16e6, "clock / ", "ICR1", "OCR1A", {1, 8, 64, 256, 1024}},      // timer 1, fast PWM, mode 14
+      {"stm32", 72e6, "PSC = -1 + ", "ARR", "CCR1", oneTo(65536)},            // general purpose, PWM mode 1
+      {"rp2040", 125e6, "DIV = ", "TOP", "CC", oneTo(255)},                   // PWM slice, whole dividers
+      {"esp32", 160e6, "prescale = -1 + ", "period", "compare", oneTo(256)}}; // MCPWM, counting up
   return all;
 }
 } // namespace
