@@ -18,9 +18,7 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-const double gate = 4;         // standard deviations, beyond which a lamp is not where it is expected
-const double negligible = 20;  // a place e to this power less likely than the best is forgotten
-const size_t maxPlaces = 2000; // of a picture that as many explain nobody asks which
+const double gate = 4; // standard deviations, beyond which a lamp is not where it is expected
 const size_t noLamp = vpLampMatch::noLamp;
 
 bool has(const std::vector<size_t> &all, size_t one)
@@ -54,7 +52,7 @@ vpPlaceSearch::vpPlaceSearch(const vpLampMatcher &settings, const vpLampIndex &i
   for (size_t k = 1; k < order.size() && m_complete && order.size() + 1 >= k + needed(); ++k) {
     for (size_t i = 0; i < k && m_complete; ++i) {
       tryPair(order[i], order[k]);
-      m_complete = m_hypotheses < m_settings.maxHypotheses && m_places.size() < maxPlaces;
+      m_complete = m_hypotheses < m_settings.maxHypotheses && 10 * m_places.size() < m_settings.maxHypotheses;
     }
   }
   std::stable_sort(m_places.begin(), m_places.end(),
@@ -143,14 +141,12 @@ void vpPlaceSearch::hypothesise(size_t i, size_t first, size_t j, size_t second)
 void vpPlaceSearch::settle(Place &place)
 {
   static const int rounds = 3; // the pair alone may expect lamps too far away, or too near
+  fit(place);
   for (int round = 0; round < rounds; ++round) {
     if (!gather(place)) {
       return;
     }
-    const Fit fit = fitOf(place);
-    place.camera += Complex(fit.step.x(), fit.step.y());
-    place.height += fit.step.z();
-    place.heading *= std::polar(1.0, fit.step.w());
+    fit(place);
   }
   if (std::abs(place.height - m_bounds.height) <= gate * m_bounds.heightSigma &&
       (m_bounds.anywhere || m_bounds.near(place))) {
@@ -164,13 +160,12 @@ void vpPlaceSearch::settle(Place &place)
 //! than needed.
 bool vpPlaceSearch::gather(Place &place) const
 {
-  const Fit fit = fitOf(place);
   std::vector<double> distances(m_seen.size());
   std::vector<size_t> lamps(m_seen.size(), noLamp);
   size_t count = 0;
   for (size_t i = 0; i < m_seen.size() && count + m_seen.size() - i >= needed(); ++i) {
     double best = -std::numeric_limits<double>::infinity();
-    visitLamps(place, i, place.lamps[i] != noLamp ? 0 : poseVariance(place, fit, i),
+    visitLamps(place, i, place.lamps[i] != noLamp ? 0 : poseVariance(place, i),
                [&](size_t lamp, const vpSeenLamp::Option &option, double d) {
                  if (option.weight - 0.5 * d > best) {
                    best = option.weight - 0.5 * d;
@@ -215,9 +210,12 @@ void vpPlaceSearch::keep(const Place &place)
       return;
     }
   }
+  // All hypotheses as unlikely as this could not dispute the best.
+  const double negligible =
+      best - std::log(m_settings.minOdds * static_cast<double>(m_settings.maxHypotheses));
   m_places.push_back(place);
   m_places.erase(std::remove_if(m_places.begin(), m_places.end(),
-                                [&](const Place &known) { return known.logEvidence < best - negligible; }),
+                                [&](const Place &known) { return known.logEvidence < negligible; }),
                  m_places.end());
 }
 
@@ -265,16 +263,15 @@ bool vpPlaceSearch::tooFewOnALine(const Place &place) const
 }
 
 //! Whether another region may be the lamp of region \e i nearly as well, or that region another lamp.
-bool vpPlaceSearch::mistakable(const Place &place, const Fit &fit, size_t i) const
+bool vpPlaceSearch::mistakable(const Place &place, size_t i) const
 {
   const double limit = distance(place, i, place.lamps[i], 0) + 2 * std::log(m_settings.minOdds);
   bool found = false;
   for (size_t j = 0; j < m_seen.size(); ++j) {
     if (j == i || place.lamps[j] == noLamp) {
-      visitLamps(place, j, poseVariance(place, fit, j),
-                 [&](size_t lamp, const vpSeenLamp::Option &, double d) {
-                   found |= d < limit && (j == i ? !has(place.lamps, lamp) : lamp == place.lamps[i]);
-                 });
+      visitLamps(place, j, poseVariance(place, j), [&](size_t lamp, const vpSeenLamp::Option &, double d) {
+        found |= d < limit && (j == i ? !has(place.lamps, lamp) : lamp == place.lamps[i]);
+      });
     }
   }
   return found;
@@ -282,10 +279,9 @@ bool vpPlaceSearch::mistakable(const Place &place, const Fit &fit, size_t i) con
 
 vpPlaceSearch::Place vpPlaceSearch::withoutUndecided(const Place &place) const
 {
-  const Fit fit = fitOf(place);
   Place decided = place;
   for (size_t i = 0; i < m_seen.size(); ++i) {
-    if (place.lamps[i] != noLamp && mistakable(place, fit, i)) {
+    if (place.lamps[i] != noLamp && mistakable(place, i)) {
       decided.lamps[i] = noLamp;
       --decided.count;
     }
@@ -344,7 +340,8 @@ Eigen::Matrix<double, 2, 4> vpPlaceSearch::byPose(const Place &place, size_t i, 
   return J;
 }
 
-vpPlaceSearch::Fit vpPlaceSearch::fitOf(const Place &place) const
+//! A step of Gauss-Newton in x, y and z of the camera and its yaw.
+void vpPlaceSearch::fit(Place &place) const
 {
   const double prior = 1 / vpMath::sqr(m_bounds.heightSigma);
   Eigen::Matrix4d information = Eigen::Vector4d(0, 0, prior, 0).asDiagonal();
@@ -360,17 +357,18 @@ vpPlaceSearch::Fit vpPlaceSearch::fitOf(const Place &place) const
       gradient += weighted.transpose() * Eigen::Vector2d(off.real(), off.imag());
     }
   }
-  Fit fit;
-  fit.covariance = information.inverse();
-  fit.step = fit.covariance * gradient;
-  return fit;
+  place.covariance = information.inverse();
+  const Eigen::Vector4d step = place.covariance * gradient;
+  place.camera += Complex(step.x(), step.y());
+  place.height += step.z();
+  place.heading *= std::polar(1.0, step.w());
 }
 
 //! Of the point that the ray of region \e i leads to, in each direction, m^2.
-double vpPlaceSearch::poseVariance(const Place &place, const Fit &fit, size_t i) const
+double vpPlaceSearch::poseVariance(const Place &place, size_t i) const
 {
   const Eigen::Matrix<double, 2, 4> J = byPose(place, i, 0.5 * (m_index.lowest() + m_index.highest()));
-  return 0.5 * (J * fit.covariance * J.transpose()).trace();
+  return 0.5 * (J * place.covariance * J.transpose()).trace();
 }
 
 double vpPlaceSearch::logEvidence(const Place &place) const
@@ -390,7 +388,7 @@ double vpPlaceSearch::logEvidence(const Place &place) const
       m_bounds.anywhere ? m_index.area(m_index.highest() - place.height) : M_PI * vpMath::sqr(m_bounds.reach);
   const double prior = -std::log(room * 2 * m_bounds.turn * std::sqrt(2 * M_PI) * sigma) -
                        0.5 * vpMath::sqr((place.height - m_bounds.height) / sigma);
-  const double volume = 2 * std::log(2 * M_PI) + 0.5 * std::log(fitOf(place).covariance.determinant());
+  const double volume = 2 * std::log(2 * M_PI) + 0.5 * std::log(place.covariance.determinant());
   return sum + prior + volume;
 }
 

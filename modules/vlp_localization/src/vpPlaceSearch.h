@@ -45,11 +45,12 @@ public:
 
   //! The camera, level, and which lamp each region is from there.
   struct Place {
-    Complex camera;            // m
-    Complex heading = 1;       // of the base, exp(i yaw)
-    double height = 0;         // m, of the camera
-    std::vector<size_t> lamps; // vpLampMatch::noLamp where none fits
-    size_t count = 0;          // lamps found
+    Complex camera;             // m
+    Complex heading = 1;        // of the base, exp(i yaw)
+    double height = 0;          // m, of the camera
+    std::vector<size_t> lamps;  // vpLampMatch::noLamp where none fits
+    size_t count = 0;           // lamps found
+    Eigen::Matrix4d covariance; // of x, y and z of the camera (m) and its yaw (rad), by these lamps
     double logEvidence = 0;
   };
 
@@ -87,19 +88,13 @@ public:
   Place withoutUndecided(const Place &place) const;
 
 private:
-  //! Gauss-Newton in x, y and z of the camera (m) and its yaw (rad).
-  struct Fit {
-    Eigen::Vector4d step;
-    Eigen::Matrix4d covariance;
-  };
-
   size_t needed() const;
   void tryPair(size_t i, size_t j);
   void hypothesise(size_t i, size_t first, size_t j, size_t second);
   void settle(Place &place);
   bool gather(Place &place) const;
   void keep(const Place &place);
-  bool mistakable(const Place &place, const Fit &fit, size_t i) const;
+  bool mistakable(const Place &place, size_t i) const;
 
   void within(const vpSeenLamp::Option &option, const Complex &place, double radius,
               std::vector<size_t> &found) const;
@@ -109,8 +104,8 @@ private:
   double variance(size_t i, double positionSigma, double depth) const;
   double distance(const Place &place, size_t i, size_t lamp, double poseVariance) const;
   Eigen::Matrix<double, 2, 4> byPose(const Place &place, size_t i, double lampHeight) const;
-  Fit fitOf(const Place &place) const;
-  double poseVariance(const Place &place, const Fit &fit, size_t i) const;
+  void fit(Place &place) const;
+  double poseVariance(const Place &place, size_t i) const;
   double logEvidence(const Place &place) const;
   double chance() const;
 
