@@ -86,7 +86,6 @@ std::vector<Setting> settings()
       filtered("odometryTurnScale", &F::odometryTurnScale),
       filtered("odometryTurnBias", &F::odometryTurnBias),
       filtered("odometryHeading", &F::odometryHeading),
-      filtered("sidewaysSpeed", &F::sidewaysSpeed),
       filtered("claimedTilt", &F::claimedTilt),
       filtered("claimedPlace", &F::claimedPlace),
       {"mapTolerance", [](vpVlpLocalizer &localizer, double factor) { localizer.mapTolerance *= factor; }}};

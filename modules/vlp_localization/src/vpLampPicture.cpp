@@ -45,6 +45,11 @@ Eigen::Vector2d vpLampPicture::motion(const Eigen::Vector3d &velocity) const
   return m_byPlace * (m_pose.wRb * moves).head<2>();
 }
 
+double vpLampPicture::stretch(const Eigen::Vector3d &velocity, double lineTime) const
+{
+  return 1 / std::max(0.1, 1 - motion(velocity)(m_along) * lineTime);
+}
+
 Eigen::Vector2d vpLampPicture::extent(const Eigen::Vector3d &velocity, double lineTime) const
 {
   if (!m_inFront) {
@@ -58,7 +63,7 @@ Eigen::Vector2d vpLampPicture::extent(const Eigen::Vector3d &velocity, double li
                  .cwiseAbs()
                  .cwiseMax((m_byPlace * Eigen::Vector2d(-diagonal.y(), diagonal.x())).cwiseAbs());
   }
-  extent(m_along) /= std::max(0.1, 1 - motion(velocity)(m_along) * lineTime);
+  extent(m_along) *= stretch(velocity, lineTime);
   return m_size * extent;
 }
 

@@ -28,10 +28,10 @@ public:
   double diameter() const;
   //! px/s, of its middle, seen by a base that moves at \e velocity: m/s along x and y of b, rad/s.
   Eigen::Vector2d motion(const Eigen::Vector3d &velocity) const;
-  /*!
-    Width and height, px, of its disc or square; 0 where it is not in front. Lines that are read while the
-    picture runs ahead of the readout see it longer. \param lineTime s, from line to line.
-  */
+  //! Times that it looks longer across the lines than it is, as its picture runs ahead of the readout, at
+  //! most ten. \param lineTime s, from line to line.
+  double stretch(const Eigen::Vector3d &velocity, double lineTime) const;
+  //! Width and height, px, of its disc or square, so stretched; 0 where it is not in front.
   Eigen::Vector2d extent(const Eigen::Vector3d &velocity, double lineTime) const;
 
 private:

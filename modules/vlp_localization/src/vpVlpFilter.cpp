@@ -208,11 +208,11 @@ void vpVlpFilter::weighNoise(const Innovation &seen, const Eigen::Matrix2d &stat
 {
   static const double calm = 0.03, noisy = 0.3; // share of the accelerations; of an innovation's variance
   static const double priorPoints = 10;         // that the stated variance weighs as much as
-  static const double slowest = 0.02, outlying = 9, least = 0.25, most = 9;
+  static const double slowest = 0.02, least = 0.25, most = 9; // the latter of a point's innovation, too
   if (manoeuvreShare > calm || m_noise * stated.trace() < noisy * seen.covariance.trace()) {
     return;
   }
-  const double excess = 0.5 * std::min(seen.distance(0), outlying) - 1;
+  const double excess = 0.5 * std::min(seen.distance(0), most) - 1;
   const double gain = std::max(slowest, 1 / (priorPoints + ++m_weighed));
   m_noise = std::clamp(m_noise * std::exp(gain * excess), least, most);
 }
@@ -333,15 +333,10 @@ vpVlpFilter::Pose vpVlpFilter::poseOf(Index first) const
   pose.wMb.makeAffine();
   pose.wtc = base.wtb + (freeAttitude ? Eigen::Vector3d(base.wRb * frame.btc) : levelArm(state, frame.btc));
   const Eigen::Matrix3d byAngles = rotationByAngles(state);
-  const auto P = m_P.block<6, 6>(first, first);
-  pose.covariance.topLeftCorner<3, 3>() = P.topLeftCorner<3, 3>();
-  pose.covariance.topLeftCorner<3, 3>() += m_common.topLeftCorner<3, 3>();
-  pose.covariance.topRightCorner<3, 3>() = P.topRightCorner<3, 3>() * byAngles.transpose();
-  pose.covariance.bottomLeftCorner<3, 3>() = byAngles * P.bottomLeftCorner<3, 3>();
-  pose.covariance.bottomRightCorner<3, 3>() = byAngles * P.bottomRightCorner<3, 3>() * byAngles.transpose();
-  pose.covariance.topRightCorner<3, 1>() += m_common.topRightCorner<3, 1>();
-  pose.covariance.bottomLeftCorner<1, 3>() += m_common.bottomLeftCorner<1, 3>();
-  pose.covariance(5, 5) += m_common(3, 3);
+  pose.covariance = m_P.block<6, 6>(first, first);
+  pose.covariance.topLeftCorner<4, 4>() += m_common;
+  pose.covariance.bottomRows<3>() = byAngles * pose.covariance.bottomRows<3>();
+  pose.covariance.rightCols<3>() *= byAngles.transpose();
   return pose;
 }
 

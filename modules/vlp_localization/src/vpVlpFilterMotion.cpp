@@ -28,8 +28,7 @@ void vpVlpFilter::addOdometry(const vpOdometry &sample)
                                                    ", expected a finite number");
     }
   }
-  static const double setBack = 1; // s
-  if (!m_odometry.empty() && sample.timestamp < m_odometry.back().timestamp - setBack) {
+  if (!m_odometry.empty() && sample.timestamp < m_odometry.back().timestamp - clockSetBack) {
     m_odometry.clear();
     m_followed = -1e300;
   }
@@ -143,7 +142,7 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   Eigen::Matrix3d R = Eigen::Matrix3d::Zero();
   R(0, 0) = vpMath::sqr(odometrySpeed) + vpMath::sqr(share * sample.v) +
             vpMath::sqr(within * (sample.v - before.v));
-  R(1, 1) = vpMath::sqr(sidewaysSpeed);
+  R(1, 1) = vpMath::sqr(odometrySpeed);
   R(2, 2) = vpMath::sqr(odometryTurnRate) + vpMath::sqr(share * sample.w) +
             vpMath::sqr(within * (sample.w - before.w));
   const Eigen::Vector3d innovation(sample.v - scale * along, -across,

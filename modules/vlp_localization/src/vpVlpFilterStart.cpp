@@ -133,10 +133,9 @@ void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
   const double turned = std::remainder(m_x(yaw) - heading, 2 * M_PI);
   const Eigen::Vector2d way = m_x.head<2>() - pose.wtb.head<2>();
   const Eigen::Vector2d mean = Eigen::Rotation2Dd(-heading - turned / 2) * way / since;
-  // A single frame's pose is as good as its map.
-  static const double placeSigma = 0.003, turnSigma = 0.005; // m, rad
-  const double place = std::sqrt(std::max(before.covariance(0, 0), before.covariance(1, 1))) + placeSigma,
-               turn = std::sqrt(before.covariance(5, 5)) + turnSigma;
+  // A single frame's pose is as good as its map, whatever that says.
+  const double place = std::sqrt(std::max(before.covariance(0, 0), before.covariance(1, 1))) + claimedPlace,
+               turn = std::sqrt(before.covariance(5, 5)) + claimedTilt;
   const auto setVelocity = [&](Index i, double meanVelocity, double error, double random, double prior) {
     // At the end of a way a velocity that walks at random is off its mean by a third of what it walks.
     const double variance = vpMath::sqr(error / since) + vpMath::sqr(random) * since / 3,

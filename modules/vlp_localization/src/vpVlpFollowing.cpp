@@ -34,6 +34,38 @@ void placeMiddles(std::vector<vpLampObservation> &observations, const vpVlpRig &
 }
 } // namespace
 
+const vpVlpFilter &vpVlpLocalizer::Scratch::predicted(const vpVlpFilter &filter, double time)
+{
+  there = filter;
+  there.manoeuvreShare = 1;
+  there.advance(time);
+  return there;
+}
+
+const vpLampFrame &vpVlpLocalizer::Scratch::frameOf(const vpVlpRig &rig, const vpLampMap &map,
+                                                    const std::vector<vpLampObservation> &observations,
+                                                    const std::vector<size_t> &usable, double time,
+                                                    bool compensateShutter)
+{
+  frame.rig = &rig;
+  frame.lineTime = lineTime;
+  frame.timestamp = time;
+  frame.logUniform = -std::log(rig.width / rig.camera.get_px() * rig.height / rig.camera.get_py());
+  frame.lamps.clear();
+  for (size_t i : usable) {
+    const vpLampObservation &seen = observations[i];
+    if (const vpLamp *known = lamp(map, seen)) {
+      vpLampSight sight = vpLampSight::from(*known, seen, rig.camera);
+      const double logPeak = logNormal(Eigen::Vector2d::Zero(), sight.covariance);
+      frame.lamps.push_back(
+          {i, known, &seen, time + (compensateShutter ? seen.time : 0), std::move(sight), logPeak});
+    }
+  }
+  std::sort(frame.lamps.begin(), frame.lamps.end(),
+            [](const vpFrameLamp &a, const vpFrameLamp &b) { return a.time < b.time; });
+  return frame;
+}
+
 //! The pose of these lamps alone, of two of them or of all that agree with each other.
 vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations,
                                const std::vector<size_t> &usable) const
@@ -45,8 +77,7 @@ vpVlpFix vpVlpLocalizer::solve(std::vector<vpLampObservation> &observations,
   std::vector<size_t> which;
   std::copy_if(usable.begin(), usable.end(), std::back_inserter(which),
                [&](size_t i) { return lamps[i] == nullptr || !m_places->lamps().isStranger(*lamps[i]); });
-  static const size_t enough = 3; // of which one bears the others out
-  if (which.size() < enough) {
+  if (which.size() <= poseLamps) { // none of which bears the others out
     which = usable;
   }
   auto solved = [&] {
@@ -84,9 +115,8 @@ vpPoseHypothesis vpVlpLocalizer::placeAt(const vpVlpFix &fix, const vpLampFrame 
     }
   }
   start.start(fix.wMb, frame.timestamp);
-  static const double recently = 1; // s
-  const double since = m_lastPose ? frame.timestamp - m_lastPose->time : recently;
-  if (!put && since < recently) {
+  if (!put && m_lastPose) {
+    const double since = frame.timestamp - m_lastPose->time;
     const vpHomogeneousMatrix way = m_lastPose->fix.wMb.inverse() * fix.wMb;
     if (std::hypot(way[0][3], way[1][3]) < maxSpeed * since &&
         std::abs(std::atan2(way[1][0], way[0][0])) < maxTurnRate * since) {
@@ -108,8 +138,8 @@ void vpVlpLocalizer::begin(vpVlpLocation &location, const std::vector<size_t> &u
   const vpLampFrame &frame =
       m_scratch->frameOf(m_rig, m_map, location.observations, usable, location.timestamp, compensateShutter);
   if (!m_places->lamps().looksAsBefore(frame, location.fix.wMb)) {
-    location.fix = vpVlpFix();
-    location.fix.refusal = "the lamps are not as large as they were: partly hidden, or one behind the other";
+    location.fix =
+        refusedFix("the lamps are not as large as they were: partly hidden, or one behind the other");
     vpLampConsensus::explain(location.fix, usable, location.observations);
   } else if (!location.fix.ambiguous) {
     const vpPoseHypothesis exact = placeAt(location.fix, frame, false, 0),

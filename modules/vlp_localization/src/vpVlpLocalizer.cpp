@@ -107,7 +107,7 @@ void expectWindows(const vpVlpFilter &filter, const vpLampMap &map, const vpVlpR
     Eigen::Vector2d middle = picture.middle();
     const int along = rig.shutter.alongColumns() ? 0 : 1;
     const double lines = middle(along) - 0.5 * ((along == 0 ? rig.width : rig.height) - 1.0);
-    middle += motion * lineTime * lines / std::max(0.1, 1 - motion(along) * lineTime);
+    middle += motion * lineTime * lines * picture.stretch(filter.velocity(), lineTime);
     static const double sigmas = 3, around = 0.7; // of the extent, on each side
     const double uncertain = sigmas * rig.camera.get_px() * (place + turn * apart) / height;
     const Eigen::Vector2d half =
@@ -173,9 +173,8 @@ bool vpVlpLocalizer::open(double time, vpVlpLocation &location)
   location.state = vpVlpFilter::State::starting;
   location.searched.clear();
   clear(location.fix);
-  static const double setBack = 1; // s
   const bool later = std::isfinite(time) && (!m_lastFrame || time > *m_lastFrame),
-             anew = std::isfinite(time) && m_lastFrame && time <= *m_lastFrame - setBack;
+             anew = std::isfinite(time) && m_lastFrame && time <= *m_lastFrame - vpVlpFilter::clockSetBack;
   if (tracking && !later && !anew) {
     location.observations.clear();
     location.fix.refusal = "the frame is not later than the one before it";
@@ -261,7 +260,8 @@ vpLampMatch vpVlpLocalizer::matchByPlace(const std::vector<vpLampObservation> &o
   std::optional<vpPoseHint> hint;
   if (tracking && m_lastPose) {
     const double since = std::abs(time - m_lastPose->time);
-    hint = vpPoseHint{m_lastPose->fix.wMb, hintReach + maxSpeed * since, hintTurn + maxTurnRate * since};
+    hint = vpPoseHint{m_lastPose->fix.wMb, filter.startPlace + maxSpeed * since,
+                      filter.startTurn + maxTurnRate * since};
   }
   return matcher.match(observations, usable, hint);
 }

@@ -70,23 +70,21 @@ public:
 
   double acceleration = 0.5;   // m/s^2/sqrt(Hz), random, along x and y of b, of a robot that starts and stops
   double turnAcceleration = 3; // rad/s^2/sqrt(Hz), likewise
-  double manoeuvreShare =
-      1;                   // of both: less of a robot that keeps its velocity, all when it may start or stop
-  double drift = 0.002;    // m/sqrt(s), of z where the robot moves: a floor is not quite flat
-  double tiltDrift = 0.05; // rad/sqrt(s), of roll and pitch where the attitude is free
-  double rollingTilt = 0.004;   // rad/sqrt(Hz), likewise between the plane of b and the way that it goes
-  double startPlace = 0.3;      // m, standard deviation of x, y and z at the start, before its lamps are seen
-  double startTurn = 0.3;       // rad, likewise of yaw
-  double startVelocity = 0.2;   // m/s, likewise
-  double startTurnRate = 1.5;   // rad/s, likewise
-  double odometrySpeed = 0.002; // m/s, standard deviation of a sample; encoders count ticks
-  double odometryShare = 0.01;  // likewise as a share of speed and turn rate: wheels slip now and then
+  double manoeuvreShare = 1;   // of both, less than 1 of a robot that goes on as it does
+  double drift = 0.002;        // m/sqrt(s), of z where the robot moves: a floor is not quite flat
+  double tiltDrift = 0.05;     // rad/sqrt(s), of roll and pitch where the attitude is free
+  double rollingTilt = 0.004;  // rad/sqrt(Hz), likewise between the plane of b and the way that it goes
+  double startPlace = 0.3;     // m, standard deviation of x, y and z at the start, before its lamps are seen
+  double startTurn = 0.3;      // rad, likewise of yaw
+  double startVelocity = 0.2;  // m/s, likewise
+  double startTurnRate = 1.5;  // rad/s, likewise
+  double odometrySpeed = 0.002;    // m/s, standard deviation of a sample, along x and y: encoders count ticks
+  double odometryShare = 0.01;     // likewise as a share of speed and turn rate: wheels slip now and then
   double odometryTurnRate = 0.005; // rad/s, likewise
   double odometryScale = 0.02;     // standard deviation of the speed's scale: a slip that stays
   double odometryTurnScale = 0.01; // of the turn rate's scale
   double odometryTurnBias = 0.002; // rad/s, of the turn rate's bias
   double odometryHeading = 0.03;   // rad, of the wheels' way ahead in b: the camera is turned on the robot
-  double sidewaysSpeed = 0.002;    // m/s, standard deviation of the speed sideways, where there is odometry
   double principalPoint = 0.001;   // normalised units, standard deviation, of a rig that states one for its
                                    // mount and none for its lens
   double focalLength = 0.003;      // share, likewise
@@ -102,6 +100,7 @@ public:
     followed  //!< the velocity is the odometry's
   };
   Odometry odometry = Odometry::followed;
+  static constexpr double clockSetBack = 1; // s, by which what is earlier than before shows that of a clock
 
   explicit vpVlpFilter(const vpVlpRig &rig);
 
@@ -118,7 +117,7 @@ public:
 
   /*!
     To be given before advance() passes the interval that it closes; a sample that is not later than the one
-    before is left out. Where it is earlier by more than a second the clock was set back: it opens a first
+    before is left out. Where it is earlier by clockSetBack the clock was set back: it opens a first
     interval. \throw vpException (badValue) where a value is not finite.
   */
   void addOdometry(const vpOdometry &sample);

@@ -70,9 +70,9 @@ public:
   double mapTolerance = 0.03; // m, how far lamps may be off their map position before they disagree, sigma
   double outlierLikelihood = 1e-4; // lamps disagree where their residuals are less likely than this
 
-  double hintReach = 0.3; // m, how far from the last pose lamps that blink alike are looked for first,
-  double maxSpeed = 1;    // m/s, and more by this for the time since then
-  double hintTurn = 0.3;  // rad, likewise about the last heading
+  //! Lamps that blink alike are looked for first within filter.startPlace and startTurn of the last pose, and
+  //! farther by these for the time since then.
+  double maxSpeed = 1;    // m/s
   double maxTurnRate = 3; // rad/s
 
   vpVlpLocalizer(const vpVlpRig &rig, const vpLampMap &map);
