@@ -96,12 +96,9 @@ void vpLampHistory::setStranger(const vpLamp &lamp, bool stranger)
 double vpLampHistory::logStill(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation) const
 {
   const Past *past = find(lamp);
-  if (past == nullptr || !past->away) {
-    return -std::numeric_limits<double>::infinity();
-  }
-  const Eigen::Vector2d ray = innovation.ray - innovation.byPlace * *past->away;
-  const Eigen::Matrix2d S = past->awayCovariance + innovation.covariance;
-  return logNormal(ray, S);
+  return past == nullptr || !past->away ? -std::numeric_limits<double>::infinity()
+                                        : logNormal(innovation.ray - innovation.byPlace * *past->away,
+                                                    past->awayCovariance + innovation.covariance);
 }
 
 double vpLampHistory::addStranger(const vpLamp &lamp, const vpVlpFilter::Innovation &innovation)

@@ -30,8 +30,7 @@ struct vpLampExtent {
 class vpLampHistory
 {
 public:
-  double mapTolerance =
-      0.03; // m, how far a lamp that was not seen before may hang from where the map says, sigma
+  double mapTolerance = 0.03; // m, how far a lamp not seen before may hang from its place in the map, sigma
   double strangerTolerance = 0.005; // m, one that other lamps have shown to hang elsewhere, sigma
   double placeTolerance = 0.0005;   // m, how far a lamp may then seem to move, sigma
   double sizeTolerance = 0.015; // share of its extent by which a lamp may seem smaller or larger than it was

@@ -110,12 +110,11 @@ bool vpPoseMixture::agree(const vpPoseHypothesis &place, const vpPoseHypothesis 
 {
   const vpVlpFilter::Pose pose = place.filter.pose(), otherPose = other.filter.pose();
   const Eigen::Matrix3d turn = pose.wMb.linear().transpose() * otherPose.wMb.linear();
-  Eigen::Array<double, 6, 1> apart, sigma;
+  Eigen::Array<double, 6, 1> apart, variance;
   apart << (otherPose.wMb.translation() - pose.wMb.translation()).head<2>(),
       std::atan2(turn(1, 0), turn(0, 0)), other.filter.velocity() - place.filter.velocity();
-  sigma << pose.covariance.diagonal()(0), pose.covariance.diagonal()(1), pose.covariance.diagonal()(5),
-      place.filter.velocityCovariance().diagonal();
-  return (apart.square() < sigma).all();
+  variance << pose.covariance.diagonal()({0, 1, 5}), place.filter.velocityCovariance().diagonal();
+  return (apart.square() < variance).all();
 }
 
 void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
