@@ -21,7 +21,6 @@ namespace
 {
 const double started = 0.036; // s, after which it has begun what it sends
 
-const uint16_t ICR1 = 0x86, OCR1A = 0x88, TCCR1A = 0x80, TCCR1B = 0x81, TIMSK1 = 0x6f;
 const unsigned int pwmOnD9 = 0x82, freeRunning = 0x01, noDivider = 0x19;
 
 struct Sent {
@@ -149,8 +148,8 @@ TEST(LampFirmware, StartsSoftly)
   double before = 0;
   for (int part = 0; part < 6; ++part) {
     lamp.run(0.005);
-    EXPECT_EQ(lamp.byte(TCCR1A), pwmOnD9);
-    const double share = lamp.word(OCR1A) / (lamp.word(ICR1) + 1.);
+    EXPECT_EQ(lamp.byte(lamp.TCCR1A), pwmOnD9);
+    const double share = lamp.word(lamp.OCR1A) / (lamp.word(lamp.ICR1) + 1.);
     EXPECT_GT(share, before + 0.1);
     before = share;
   }
@@ -165,10 +164,10 @@ TEST(LampFirmware, OnePulseIsTheTimersOwn)
     const Sent sent = modulations.pulse(false);
     const std::string answer = lamp.ask(sent.line);
     SCOPED_TRACE(sent.line + " -> " + answer);
-    EXPECT_EQ(lamp.byte(TCCR1A), pwmOnD9);
-    EXPECT_EQ(lamp.byte(TCCR1B), noDivider);
-    EXPECT_EQ(lamp.word(ICR1) + 1, sent.period);
-    EXPECT_NEAR(lamp.word(OCR1A) + 1, sent.changes[1], 1);
+    EXPECT_EQ(lamp.byte(lamp.TCCR1A), pwmOnD9);
+    EXPECT_EQ(lamp.byte(lamp.TCCR1B), noDivider);
+    EXPECT_EQ(lamp.word(lamp.ICR1) + 1, sent.period);
+    EXPECT_NEAR(lamp.word(lamp.OCR1A) + 1, sent.changes[1], 1);
     EXPECT_NEAR(fieldOf(answer, "frequency_hz"), vpSimulatedArduino::clock / sent.period, 0.00051);
     EXPECT_NEAR(fieldOf(answer, "duty"), sent.changes[1] / sent.period, 1 / sent.period);
   }
@@ -185,7 +184,7 @@ TEST(LampFirmware, EdgesOfTwoPulsesAndWordsAreRightToTheCycle)
     const std::string answer = lamp.ask(sent.line);
     SCOPED_TRACE(sent.line + " -> " + answer);
     ASSERT_EQ(answer.substr(0, 5), "lamp ");
-    EXPECT_EQ(lamp.byte(TCCR1B), freeRunning);
+    EXPECT_EQ(lamp.byte(lamp.TCCR1B), freeRunning);
     lamp.run(1e-3);
     lamp.edges.clear();
     lamp.say("show\n"); // interrupts of the serial port come between
@@ -243,7 +242,7 @@ TEST(LampFirmware, TheLastOfManyProgramsCounts)
     if ((period - 1000 + 3) % 256 < 6) {
       vpSimulatedArduino again(VLP_LAMP_FIRMWARE, lamp.eeprom());
       again.run(started);
-      EXPECT_EQ(again.word(ICR1) + 1, static_cast<unsigned int>(period));
+      EXPECT_EQ(again.word(lamp.ICR1) + 1, static_cast<unsigned int>(period));
     }
   }
 }
@@ -285,9 +284,9 @@ TEST(LampFirmware, PowerLostWhileItIsToldLeavesTheOldProgramOrTheNew)
     again.run(started);
     again.edges.clear();
     again.run(0.02);
-    const bool both = again.word(ICR1) + 1 == 8000 && again.word(OCR1A) + 1 == 4000;
-    old += again.byte(TCCR1B) == noDivider && both;
-    after += again.byte(TCCR1B) == freeRunning && worstEdge(again.edges, next) <= 1;
+    const bool both = again.word(lamp.ICR1) + 1 == 8000 && again.word(lamp.OCR1A) + 1 == 4000;
+    old += again.byte(lamp.TCCR1B) == noDivider && both;
+    after += again.byte(lamp.TCCR1B) == freeRunning && worstEdge(again.edges, next) <= 1;
   }
   std::cout << moments << " moments within the " << steps.size() - 1 << " bytes that are written: " << old
             << " old, " << after << " new\n";
@@ -340,7 +339,7 @@ TEST(LampFirmware, AnErrorNamesTheFieldAndChangesNothing)
     EXPECT_EQ(answer.substr(0, answer.find(": expected ")), "error " + field) << answer;
     EXPECT_EQ(lamp.ask("show"), told);
   }
-  EXPECT_EQ(lamp.word(ICR1) + 1, std::round(vpSimulatedArduino::clock / 2270));
+  EXPECT_EQ(lamp.word(lamp.ICR1) + 1, std::round(vpSimulatedArduino::clock / 2270));
 }
 
 TEST(LampFirmware, GarbageDoesNotStopIt)
@@ -366,7 +365,7 @@ TEST(LampFirmware, WatchdogStartsItAnew)
   vpSimulatedArduino lamp(VLP_LAMP_FIRMWARE);
   lamp.run(started);
   const std::string told = lamp.ask("set frequency_hz=3000 duty=0.3 phase_difference=0.35");
-  lamp.poke(TIMSK1, 0);
+  lamp.poke(lamp.TIMSK1, 0);
   lamp.run(1.3);
   lamp.edges.clear();
   lamp.run(0.01);

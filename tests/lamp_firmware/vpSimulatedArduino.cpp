@@ -16,7 +16,6 @@ extern "C" {
 
 namespace
 {
-const uint16_t TIMSK1 = 0x6f, OCR1A = 0x88;
 const unsigned int OCIE1A = 2; // mask
 } // namespace
 

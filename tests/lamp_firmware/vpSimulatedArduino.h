@@ -21,6 +21,7 @@ class vpSimulatedArduino
 public:
   static constexpr double clock = 16e6; // Hz
   static constexpr double baud = 38400;
+  static constexpr uint16_t TIMSK1 = 0x6f, TCCR1A = 0x80, TCCR1B = 0x81, ICR1 = 0x86, OCR1A = 0x88;
   using Eeprom = std::vector<uint8_t>;
 
   struct Edge {
