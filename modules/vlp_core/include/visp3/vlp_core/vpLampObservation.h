@@ -81,7 +81,7 @@ struct VISP_EXPORT vpStripeFeatures {
                                                 // in each frame; NaN: all of it
   double duty = std::numeric_limits<double>::quiet_NaN(); // lit share of the period
   double dutySigma = std::numeric_limits<double>::quiet_NaN();
-  double dutyClipped = 0; // the part of dutySigma that lines at the grey scale's end leave, alike in all frames
+  double dutyClipped = 0; // the part of it that lines at the grey scale's end leave, alike in all frames
   /*!
     Frequencies by duty, the shortest first, where they are known together only: near simple fractions of the
     rate of lines a short pulse may stay within one line over the whole lamp. Empty elsewhere.
@@ -117,10 +117,10 @@ struct VISP_EXPORT vpLampObservation {
   vpLampOutline outline;
   Eigen::Vector2d point = Eigen::Vector2d::Zero();      // px, projection of the lamp's middle
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero(); // px^2, of point
-  double time = 0;      // s, on the frame's clock: middle of the exposure of the line through point
-  bool cut = false;     // the picture's border cuts the lamp
-  double blur = 0;      // px, standard deviation of the spread of its edge; 0: it has none
-  double noise = 0;     // grey levels, of pixels about its edge, standard deviation
+  double time = 0;  // s, on the frame's clock: middle of the exposure of the line through point
+  bool cut = false; // the picture's border cuts the lamp
+  double blur = 0;  // px, standard deviation of the spread of its edge; 0: it has none
+  double noise = 0; // grey levels, of pixels about its edge, standard deviation
   double blinking =
       1; // share of the light inside its outline that has the modulation of its features; 0: none
   vpStripeFeatures features;
