@@ -15,7 +15,7 @@ documents=("$@")
   mapfile -t documents < <(find . -name '*.md' -not -path './build/*' -not -path './.*/*' | sed 's|^\./||' | sort)
 
 declare -A options # of a program, each between spaces
-for program in vlp-locate vlp-servo vlp-simulate vlp-evaluate vlp-plan vlp-calibrate; do
+for program in vlp-locate vlp-servo vlp-simulate vlp-evaluate vlp-plan vlp-lamp vlp-calibrate; do
   commands=("")
   [ "$program" != vlp-calibrate ] || commands=("" camera shutter mount lamps)
   options[$program]=' --help --version '
