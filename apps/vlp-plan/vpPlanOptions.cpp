@@ -206,10 +206,11 @@ void vpPlanOptions::checkTogether(bool ook) const
     vpBadInput("--code: ook without --words, expected only with it");
   }
   if (!check.empty()) {
-    if (!out.empty() || !picture.empty() || !place.empty() || lamps > 0 || reuse > 0 || words) {
-      vpBadInput(
-          "--check: with --out, --picture, --place, --lamps, --reuse or --words, expected none of these: it "
-          "plans nothing");
+    if (!out.empty() || !picture.empty() || !place.empty() || lamps > 0 || reuse > 0 || words || clock > 0 ||
+        !timers.empty()) {
+      vpBadInput("--check: with --out, --picture, --place, --lamps, --reuse, --words, --clock or --timers, "
+                 "expected none of these: it "
+                 "plans nothing");
     }
     return;
   }

@@ -279,6 +279,8 @@ TEST_F(VlpPlan, BadUsageIsOneClearLine)
   }
   expectOneLine({"--rig", rig, "--check", hall, "--reuse", "3"}, badInput,
                 {"--check: with --out", "--reuse"});
+  expectOneLine({"--rig", rig, "--check", hall, "--timers", "avr"}, badInput,
+                {"--check: with --out", "--timers"});
   expectOneLine(with({"--place", hall, "--out", hall}), badInput, {"--out: ", "which is an input"});
 }
 
