@@ -35,10 +35,10 @@ std::string whole(double value)
 const std::vector<vpLampTimer> &timers()
 {
   static const std::vector<vpLampTimer> all = {
-      {"avr", 16e6, "clock / ", "ICR1", "OCR1A", {1, 8, 64, 256, 1024}},      // timer 1, fast PWM, mode 14
-      {"stm32", 72e6, "PSC = -1 + ", "ARR", "CCR1", oneTo(65536)},            // general purpose, PWM mode 1
-      {"rp2040", 125e6, "DIV = ", "TOP", "CC", oneTo(255)},                   // PWM slice, whole dividers
-      {"esp32", 160e6, "prescale = -1 + ", "period", "compare", oneTo(256)}}; // MCPWM, counting up
+      {"avr", 16e6, "clock / ", "ICR1", "OCR1A", -1, {1, 8, 64, 256, 1024}}, // timer 1, fast PWM, mode 14
+      {"stm32", 72e6, "PSC = -1 + ", "ARR", "CCR1", 0, oneTo(65536)},        // general purpose, PWM mode 1
+      {"rp2040", 125e6, "DIV = ", "TOP", "CC", 0, oneTo(255)},               // PWM slice, whole dividers
+      {"esp32", 160e6, "prescale = -1 + ", "period", "compare", 0, oneTo(256)}}; // MCPWM, counting up
   return all;
 }
 } // namespace
@@ -84,8 +84,7 @@ vpReportTable vpLampTimer::registers(const vpLampMap &map, unsigned int prescale
     const bool word = lamp.modulation.kind == vpModulation::Kind::word;
     const double rate = word ? lamp.modulation.chipRate : lamp.modulation.frequency,
                  cycles = std::round(clock / prescaler / rate);
-    // The AVR's compare value is the last lit cycle; the others' the first dark one.
-    const double lit = std::round(lamp.modulation.duty.value_or(0) * cycles) - (name == "avr" ? 1 : 0);
+    const double lit = std::round(lamp.modulation.duty.value_or(0) * cycles) + compareOffset;
     table.rows.push_back({lamp.id, vpNumberText(rate), whole(cycles - 1), word ? "each chip" : whole(lit)});
   }
   table.note = "A period is one cycle more than its register.";

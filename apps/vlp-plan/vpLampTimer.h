@@ -21,7 +21,8 @@ struct vpLampTimer {
   std::string name;
   double clock = 0; // Hz, before the prescaler
   std::string prescalerRegister, periodRegister, compareRegister;
-  std::vector<unsigned int> prescalers; // that it has, ascending; the register of 1 to n has one less
+  int compareOffset = 0; // -1 where the compare register has the last lit cycle, 0 where the first dark one
+  std::vector<unsigned int> prescalers; // that it has, ascending
 
   //! The names of those there are.
   static std::vector<std::string> names();

@@ -37,17 +37,25 @@ struct vpSimulatedStripes {
   //! \param rim Light of the emitter's first and last line, as a share of its middle's.
   vpStripeProfile profile(const vpModulation &modulation, std::mt19937_64 &generator, double rim = 1) const
   {
+    const double rate = 1 + 1e-6 * oscillator * std::normal_distribution<double>()(generator);
+    const vpLampLight light(modulation, rate, std::uniform_real_distribution<double>(0, 1)(generator));
+    return profile([&light](double from, double to) { return light.over(from, to).share; }, generator, rim);
+  }
+
+  //! \param lit Share of the time between two times, s, during which the lamp is lit.
+  vpStripeProfile profile(const std::function<double(double from, double to)> &lit,
+                          std::mt19937_64 &generator, double rim = 1) const
+  {
     std::normal_distribution<double> normal;
-    std::uniform_real_distribution<double> uniform(0, 1);
-    const vpLampLight light(modulation, 1 + 1e-6 * oscillator * normal(generator), uniform(generator));
-    const double first = std::floor(1000 * uniform(generator)); // of the sensor's lines
+    const double first = // of the sensor's lines
+        std::floor(1000 * std::uniform_real_distribution<double>(0, 1)(generator));
     vpStripeProfile profile;
     profile.exposure = exposure;
     for (int i = 0; i < lines; ++i) {
       const double line = std::floor((first + i) * step), start = line * rowTime * (1 + rowTimeError);
       const double y = 2 * (i + 0.5) / lines - 1, emitted = rim + (1 - rim) * std::sqrt(1 - y * y);
       profile.time.push_back(line * rowTime + exposure / 2);
-      profile.light.push_back(2 * amplitude * emitted * light.over(start, start + exposure).share +
+      profile.light.push_back(2 * amplitude * emitted * lit(start, start + exposure) +
                               noise() * normal(generator));
       profile.sigma.push_back(noise());
     }
