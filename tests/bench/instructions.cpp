@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // A few frames for callgrind to count instructions of, which no noise disturbs: instructions.sh runs it.
-// bench_instructions WIDTHxHEIGHT whole|tracked [FRAMES [cluttered]]; from the top of the repository
+// bench_instructions WIDTHxHEIGHT whole|tracked [FRAMES [CEILING]]; from the top of the repository
 
 #include <cstdio>
 #include <cstdlib>
@@ -34,11 +34,10 @@ int main(int argc, char **argv)
   vpSpeedCase what;
   const std::string kind = argc > 2 ? argv[2] : "";
   const int frames = argc > 3 ? std::atoi(argv[3]) : 4;
-  what.cluttered = argc > 4 && std::string(argv[4]) == "cluttered";
-  if (argc < 3 || argc > (what.cluttered ? 5 : 4) ||
-      std::sscanf(argv[1], "%ux%u", &what.width, &what.height) != 2 || frames < 1 ||
+  what.ceiling = argc > 4 ? argv[4] : what.ceiling;
+  if (argc < 3 || argc > 5 || std::sscanf(argv[1], "%ux%u", &what.width, &what.height) != 2 || frames < 1 ||
       (kind != "whole" && kind != "tracked")) {
-    std::fprintf(stderr, "usage: bench_instructions WIDTHxHEIGHT whole|tracked [FRAMES [cluttered]]\n");
+    std::fprintf(stderr, "usage: bench_instructions WIDTHxHEIGHT whole|tracked [FRAMES [CEILING]]\n");
     return 2;
   }
   cv::setNumThreads(1);

@@ -43,7 +43,7 @@ failed_with() # EXIT
 count() # SIZE whole|tracked|cluttered: millions of instructions per frame
 {
   local how=("$2" "$frames")
-  [ "$2" != cluttered ] || how=(whole "$frames" cluttered)
+  [ "$2" != cluttered ] || how=(whole "$frames" mixed)
   valgrind -q --tool=callgrind --toggle-collect='vpCountedFrames*' --callgrind-out-file="$work/counts" \
     "$program" "$1" "${how[@]}" >"$work/said" 2>&1 || failed_with $?
   if ! grep -q "$frames frames, $frames with a position" "$work/said"; then

@@ -273,7 +273,11 @@ std::vector<vpSpeedCase> cases()
   }
   all.push_back(but([](vpSpeedCase &what) { what.sigma = 0; }));
   all.push_back(but([](vpSpeedCase &what) { what.sigma = 3; }));
-  all.push_back(but([](vpSpeedCase &what) { what.cluttered = true; }));
+  for (const std::string &ceiling : vpSpeedCeiling::kinds()) {
+    if (ceiling != vpSpeedCase().ceiling) {
+      all.push_back(but([&ceiling](vpSpeedCase &what) { what.ceiling = ceiling; }));
+    }
+  }
   all.push_back(but([](vpSpeedCase &what) { what.lamps = 2; }));
   all.push_back(but([](vpSpeedCase &what) { what.lamps = 30; }));
   return all;

@@ -20,6 +20,8 @@
 #include <visp3/vlp_core/vpVlpRig.h>
 #include <visp3/vlp_simulation/vpRollingShutterRenderer.h>
 
+#include "vpSpeedCeiling.h"
+
 #ifdef ENABLE_VISP_NAMESPACE
 using namespace VISP_NAMESPACE_NAME;
 #endif
@@ -29,15 +31,14 @@ struct vpSpeedCase {
   unsigned int width = 2048, height = 1536; // px
   int lamps = 4;                            // 2, 4 or 30
   double sigma = 1;                         // grey levels, of the read noise; 0: no photon noise either
-  bool cluttered = false;
+  std::string ceiling = "plain";            // a kind of vpSpeedCeiling
 
   double pixels() const { return static_cast<double>(width) * height; }
 
   std::string name() const
   {
     std::ostringstream name;
-    name << width << "x" << height << "/lamps:" << lamps << "/sigma:" << sigma
-         << (cluttered ? "/cluttered" : "/plain");
+    name << width << "x" << height << "/lamps:" << lamps << "/sigma:" << sigma << "/" << ceiling;
     return name.str();
   }
 };
@@ -110,6 +111,7 @@ public:
     m_renderer->render(
         m_scene, [&camera](double) { return camera; }, frame.timestamp, static_cast<unsigned>(1000 + k),
         frame.I);
+    finish(frame);
     return frame;
   }
 
@@ -130,6 +132,7 @@ public:
     m_renderer->render(
         m_scene, [this](double time) { return wMc(time); }, frame.timestamp, static_cast<unsigned>(k),
         frame.I);
+    finish(frame);
     return frame;
   }
 
@@ -222,28 +225,22 @@ private:
           vpLampLight(lamp.modulation, 1 + 1e-6 * lamp.oscillatorPpm * normal(generator), uniform(generator));
       m_scene.lamps.push_back(simulated);
     }
-    if (!m_what.cluttered) {
-      return;
-    }
-    m_scene.ceilingShare = 0.03;
-    m_camera.haloShare = 0.01;
-    m_camera.haloRadius = 0.032 * m_camera.rig.camera.get_px();
-    for (const Eigen::Vector2d &at : {Eigen::Vector2d(0.05, 0.2), Eigen::Vector2d(-0.7, 0.05)}) {
-      vpSimulatedLamp bulb;
-      bulb.lamp.id = "bulb";
-      bulb.lamp.position = {at.x(), at.y(), 1.5};
-      bulb.lamp.size = 0.15;
-      m_scene.lamps.push_back(bulb);
-    }
-    m_scene.windows = {{{-0.05, -0.25, 1.6}, {0.3, 0, 0}, {0, 0.02, 0}, 220, {}}, // a tube
-                       {{0.9, 0, 1.7}, {0.15, 0, 0}, {0, 0.2, 0}, 400, {}},       // a skylight
-                       {{-0.02, 0.65, 1.5}, {0.2, 0, 0}, {0, 0.12, 0}, 150, {}}}; // a panel
+    m_ceiling = std::make_unique<vpSpeedCeiling>(m_what.ceiling, m_map);
+    m_ceiling->hang(m_scene, m_camera, rig().camera.get_px());
+  }
+
+  //! With what only real pictures show.
+  void finish(vpVlpFrame &frame) const
+  {
+    static const double height = 1.5; // m, of the ceiling
+    m_ceiling->add(rig().camera.get_px(), pixelOf({0, 0, height}, wMc(frame.timestamp)), frame.I);
   }
 
   vpSpeedCase m_what;
   vpSimulatedCamera m_camera;
   vpLampMap m_map;
   vpSimulatedScene m_scene;
+  std::unique_ptr<vpSpeedCeiling> m_ceiling;
   std::unique_ptr<vpRollingShutterRenderer> m_renderer;
   std::vector<vpVlpFrame> m_stills, m_loop;
 };
