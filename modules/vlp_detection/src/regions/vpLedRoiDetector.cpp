@@ -330,7 +330,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
     const double grey = dark.level + contrast;
     const auto begun = static_cast<int>(tree.size()); // the level's first node
     vpLevelStripes level(lines, grey, grey + peakFactor * dark.noiseAt(grey), first ? nullptr : &below);
-    for (vpLevelStripes::Set &set : level.sets(maxDarkGap)) {
+    for (vpLevelStripes::Set &set : level.sets(maxDarkGap, longestPeriod)) {
       for (Group &group : Group::lampsOf(level, std::move(set), lines, dark.level, workLeft)) {
         const int node = static_cast<int>(tree.size());
         const int largest =

@@ -126,11 +126,11 @@ std::vector<int> joinTouching(const std::vector<Run> &runs)
 }
 
 //! Whether the lower stripe may go on where the upper one ended, behind a dark gap.
-bool facing(const Stripe &upper, const Stripe &lower, double maxDarkGap, int samples)
+bool facing(const Stripe &upper, const Stripe &lower, double maxDarkGap, double mostLines, int samples)
 {
   const int gap = lower.box.y - upper.lastLine() - 1;
   const int overlap = std::min(upper.box.br().x, lower.box.br().x) - std::max(upper.box.x, lower.box.x);
-  if (gap < 0 || overlap < 0.6 * std::min(upper.box.width, lower.box.width)) {
+  if (gap < 0 || gap > mostLines || overlap < 0.6 * std::min(upper.box.width, lower.box.width)) {
     return false;
   }
   // A stripe as wide as the picture belongs to a lamp wider than it, of a height that nobody knows.
@@ -221,7 +221,7 @@ vpLevelStripes::Set vpLevelStripes::Set::joinedWith(const Set &other, const std:
   return joined;
 }
 
-std::vector<vpLevelStripes::Set> vpLevelStripes::sets(double maxDarkGap) const
+std::vector<vpLevelStripes::Set> vpLevelStripes::sets(double maxDarkGap, double mostLines) const
 {
   std::vector<int> order(stripes.size());
   std::iota(order.begin(), order.end(), 0);
@@ -236,7 +236,7 @@ std::vector<vpLevelStripes::Set> vpLevelStripes::sets(double maxDarkGap) const
     std::vector<int> upper;
     for (int x = stripe.box.x; x < stripe.box.br().x; ++x) {
       if (above[x] >= 0 && (upper.empty() || upper.back() != above[x]) &&
-          facing(stripes[above[x]], stripe, maxDarkGap, picture.width)) {
+          facing(stripes[above[x]], stripe, maxDarkGap, mostLines, picture.width)) {
         upper.push_back(above[x]);
       }
     }

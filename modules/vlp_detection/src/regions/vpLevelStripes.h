@@ -55,8 +55,9 @@ struct vpLevelStripes {
   vpLevelStripes(const cv::Mat_<unsigned char> &lines, double grey, double leastPeak,
                  const vpLevelStripes *below);
 
-  //! Links stripes that face each other across dark gaps of no more than \e maxDarkGap times their width.
-  std::vector<Set> sets(double maxDarkGap) const;
+  //! Links stripes that face each other across dark gaps of no more than \e maxDarkGap times their width, nor
+  //! of \e mostLines.
+  std::vector<Set> sets(double maxDarkGap, double mostLines) const;
 };
 
 END_VISP_NAMESPACE

@@ -117,6 +117,7 @@ vpLedDetector::vpLedDetector(const vpVlpRig &rig, const vpLampMap &map)
   }
   m_timing = rig.lineTiming();
   longestPeriod = vpLongestPeriod(map, rig);
+  roiDetector.longestPeriod = vpLongestPeriodLines(map, rig);
   m_exposure =
       vpExposureEvidence(std::hypot(m_timing.exposure(), m_timing.averaging()), m_timing.logExposureSigma());
   stripeAnalyzer.searchTwoPulses = std::any_of(map.lamps.begin(), map.lamps.end(), [](const vpLamp &lamp) {

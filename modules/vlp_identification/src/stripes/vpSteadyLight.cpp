@@ -94,6 +94,18 @@ double vpLongestLit(const vpStripeProfile &profile)
   return longest;
 }
 
+double vpLongestPeriodLines(const vpLampMap &map, const vpVlpRig &rig)
+{
+  static const double never = std::numeric_limits<double>::infinity();
+  double longest = map.lamps.empty() ? never : 0; // s
+  for (const vpLamp &lamp : map.lamps) {
+    const double frequency = lamp.modulation.repetitionFrequency();
+    longest = std::max(longest, frequency > 0 ? 1 / frequency : never);
+  }
+  const double line = std::abs(rig.lineTiming().meanLineTime());
+  return line > 0 ? longest / line : never;
+}
+
 double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig)
 {
   static const double blur = 0.2, sigmas = 5, never = std::numeric_limits<double>::infinity();

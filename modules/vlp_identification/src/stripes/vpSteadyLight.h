@@ -23,6 +23,9 @@ double vpDeepestDip(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi);
 //! s, the longest stretch of a profile's lines that are nearer to its brightest than to its darkest one.
 double vpLongestLit(const vpStripeProfile &profile);
 
+//! Lines of the picture that the longest period of the map's lamps takes; infinite without lamps or row time.
+double vpLongestPeriodLines(const vpLampMap &map, const vpVlpRig &rig);
+
 /*!
   s, the longest period of the map's lamps, as far as the row time is known: what shines on end for longer is
   none of them. Infinite without lamps, and where one may be dark for so short that every line sees some

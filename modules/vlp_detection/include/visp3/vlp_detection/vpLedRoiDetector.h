@@ -5,6 +5,7 @@
 #ifndef vpLedRoiDetector_h
 #define vpLedRoiDetector_h
 
+#include <limits>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -70,6 +71,8 @@ public:
   double levelRatio = 1.4; // between neighbouring levels, measured from the background
   double noiseFactor = 4;  // lowest level, in standard deviations of the noise above the background
   double maxDarkGap = 0.6; // longest dark gap inside a lamp, as a share of its widest chord
+  //! lines, of the slowest lamp there may be: no stripe of any, lit or dark, is longer.
+  double longestPeriod = std::numeric_limits<double>::infinity();
   int minWidth = 8;        // samples
   int minHeight = 6;       // lines
   double minContrast = 3;  // grey levels, lowest level above the background
