@@ -77,7 +77,7 @@ vpImage<unsigned char> pictureOf(const std::vector<Luminaire> &lamps, double noi
 
 vpLampMap luminaireMap()
 {
-  return vpPwmLamps({1500, 2000, 2600});
+  return vpPwmLamps({450, 1500, 2000, 2600});
 }
 
 std::vector<vpLampObservation> seenIn(const std::vector<Luminaire> &lamps)

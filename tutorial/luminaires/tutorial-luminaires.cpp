@@ -60,7 +60,6 @@ int main(int argc, char **argv)
     scenario.frames = 2;
     vpSimulation simulation(scenario, 1); // the seed of all that is left to chance
     vpLedDetector detector(simulation.rig(), simulation.map());
-    detector.skipSteady = true; // lamps that do not blink are not what we look for
     size_t missing = 0;
     for (vpVlpFrame frame; simulation.next(frame);) {
       if (frame.timestamp == 0)

@@ -103,7 +103,8 @@ void vpShutterCalibration::look(const vpVlpFrame &frame, Reading &reading) const
   vpLedDetector detector(rig, m_map);
   static const double anyExposure = 3; // share of the one to start from
   detector.stripeAnalyzer.exposureTolerance = anyExposure;
-  detector.longestPeriod = std::numeric_limits<double>::infinity(); // in units of a row time not yet known
+  detector.longestPeriod = detector.roiDetector.longestPeriod =
+      std::numeric_limits<double>::infinity(); // in units of a row time not yet known
   detector.detect(frame.I);
   for (const vpLampObservation &lamp : detector.observations()) {
     const vpStripeFeatures &seen = lamp.features;

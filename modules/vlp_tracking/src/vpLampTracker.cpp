@@ -37,7 +37,6 @@ bool blinks(const vpLampObservation &seen)
 vpLampTracker::vpLampTracker(const vpVlpRig &rig, const vpLampMap &map)
     : detector(rig, map), m_rig(rig), m_scratch(std::make_unique<Scratch>())
 {
-  detector.skipSteady = true; // none of them is followed
 }
 vpLampTracker::~vpLampTracker() = default;
 vpLampTracker::vpLampTracker(vpLampTracker &&) noexcept = default;

@@ -15,6 +15,7 @@
 #include "vpBackground.h"
 #include "vpBinnedSearch.h"
 #include "vpChordShape.h"
+#include "vpDips.h"
 #include "vpLampGroup.h"
 #include "vpLevelStripes.h"
 #include "vpOwnStripes.h"
@@ -110,16 +111,17 @@ void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,
   std::vector<char> good(tree.size() - begun);
   for (size_t i = 0; i < good.size(); ++i) {
     const Group &group = tree[begun + i];
-    good[i] = settled(group, dark.noise) && !mayHoldLamps(group, lines, dark.level);
+    good[i] = group.roi.steady || (settled(group, dark.noise) && !mayHoldLamps(group, lines, dark.level));
   }
   for (size_t i = 0; i < good.size(); ++i) {
     const Group &group = tree[begun + i];
     const cv::Rect around = good[i] != 0 ? withNextStripes(group.roi) : cv::Rect();
     const bool last =
-        good[i] != 0 &&
-        std::none_of(level.stripes.begin(), level.stripes.end(), [&](const vpLevelStripes::Stripe &other) {
-          return good[other.group - begun] == 0 && (around & other.box).area() > 0;
-        });
+        group.roi.steady ||
+        (good[i] != 0 &&
+         std::none_of(level.stripes.begin(), level.stripes.end(), [&](const vpLevelStripes::Stripe &other) {
+           return good[other.group - begun] == 0 && (around & other.box).area() > 0;
+         }));
     for (int s : group.set.stripes) {
       level.stripes[s].settled = last;
     }
@@ -331,8 +333,16 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
     const auto begun = static_cast<int>(tree.size()); // the level's first node
     vpLevelStripes level(lines, grey, grey + peakFactor * dark.noiseAt(grey), first ? nullptr : &below);
     for (vpLevelStripes::Set &set : level.sets(maxDarkGap, longestPeriod)) {
-      for (Group &group : Group::lampsOf(level, std::move(set), lines, dark.level, workLeft)) {
+      cv::Rect box;
+      for (int s : set.stripes) {
+        box |= level.stripes[s].box;
+      }
+      const bool steady = box.height > longestPeriod && !vpMayBlink(lines, box, dark, longestPeriod);
+      long noWork = 0;
+      for (Group &group :
+           Group::lampsOf(level, std::move(set), lines, dark.level, steady ? noWork : workLeft)) {
         const int node = static_cast<int>(tree.size());
+        group.roi.steady = steady;
         const int largest =
             *std::max_element(group.set.stripes.begin(), group.set.stripes.end(), [&](int a, int b) {
               return level.stripes[a].box.area() < level.stripes[b].box.area();

@@ -63,11 +63,16 @@ bool isWhole(const vpOutlineFit &fit)
   return fit.sound && fit.outline.shape == vpLampOutline::Shape::ellipse;
 }
 
+//! Lines between two boxes; negative where they share some.
+int gapAlong(const cv::Rect &a, const cv::Rect &b)
+{
+  return std::max(a.y, b.y) - std::min(a.br().y, b.br().y);
+}
+
 //! px between two boxes, along lines or across, whichever is more; negative where they overlap.
 int gapBetween(const cv::Rect &a, const cv::Rect &b)
 {
-  return std::max(std::max(a.x, b.x) - std::min(a.br().x, b.br().x),
-                  std::max(a.y, b.y) - std::min(a.br().y, b.br().y));
+  return std::max(std::max(a.x, b.x) - std::min(a.br().x, b.br().x), gapAlong(a, b));
 }
 
 int sizeOf(const cv::Rect &box)
@@ -158,7 +163,8 @@ void vpLedDetector::takeApart(const vpLinePicture &picture, std::vector<Region> 
     double darkest = 0;
     cv::minMaxLoc(picture.grey(roi.box), &darkest);
     for (const double times : {2.0, 4.0}) {
-      if (!blinksSomehow(regions[i].lamp) || isWhole(regions[i].fit)) {
+      if (regions[i].lamp.features.stripes < 2 || !blinksSomehow(regions[i].lamp) ||
+          isWhole(regions[i].fit)) {
         break; // steady, one lamp, or taken apart already
       }
       vpLedRoiDetector bright = roiDetector;
@@ -285,7 +291,7 @@ void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<Region>
 {
   std::vector<char> done(regions.size(), 0);
   for (size_t i = 0; i < regions.size(); ++i) {
-    if (done[i] != 0 || tells(regions[i].lamp)) {
+    if (done[i] != 0 || regions[i].roi.steady || tells(regions[i].lamp)) {
       continue;
     }
     std::vector<size_t> pieces{i};
@@ -293,14 +299,16 @@ void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<Region>
     done[i] = 1;
     for (size_t n = 0; n < pieces.size(); ++n) {
       for (size_t k = 0; k < regions.size(); ++k) {
-        if (done[k] == 0 && !tells(regions[k].lamp) && neighbours(regions[pieces[n]].roi, regions[k].roi)) {
+        if (done[k] == 0 && !regions[k].roi.steady && !tells(regions[k].lamp) &&
+            gapAlong(regions[pieces[n]].roi.box, regions[k].roi.box) <= roiDetector.longestPeriod &&
+            neighbours(regions[pieces[n]].roi, regions[k].roi)) {
           done[k] = 1;
           pieces.push_back(k);
           whole = joined(whole, regions[k].roi);
         }
       }
     }
-    if (pieces.size() > 1) {
+    if (pieces.size() > 1 && vpPatchwork::isLamp(stripesOf(picture, vpOutlineFitter::boxOf(whole), whole))) {
       Region together = observe(picture, whole);
       if (vpPatchwork::isLamp(together.lamp.features)) {
         regions[i] = together;

@@ -264,7 +264,7 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
                                           const vpLedRoi &roi) const
 {
   const vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
-  if (!profile.light.empty() && vpLongestLit(profile) > longestPeriod) {
+  if (vpDeepestDip(profile) < stripeAnalyzer.minModulation || vpLongestLit(profile) > longestPeriod) {
     return {};
   }
   vpStripeFeatures features = analyzed(profile, fit.sound); // parts of a lamp show no whole word
@@ -290,7 +290,8 @@ vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, cons
   static const double unlike = 0.2; // depth
   const vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
   if (vpStripeStarts::peaks(agreed).size() < vpPatchwork::fewestStripes ||
-      agreed.depth() < vpPatchwork::least) {
+      agreed.depth() < vpPatchwork::least || vpLongestLit(agreed) > longestPeriod ||
+      vpLongestDark(agreed) > roiDetector.longestPeriod) {
     return {};
   }
   const vpStripeFeatures features = analyzed(agreed, false);
@@ -333,7 +334,8 @@ vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const
 {
   Region region;
   region.roi = roi;
-  const bool steady = skipSteady && vpDeepestDip(picture.grey, roi) < stripeAnalyzer.minModulation;
+  const bool steady =
+      roi.steady || vpDeepestDip(picture.grey, roi) < stripeAnalyzer.minModulation; // at a first look
   region.fit = steady ? vpOutlineFitter::boxOf(roi)
                       : outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(),
                                           roi, m_blur);

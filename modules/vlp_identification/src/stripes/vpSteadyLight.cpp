@@ -32,6 +32,13 @@ double deepestDip(const std::vector<double> &values, double tolerance)
   return deepest / std::max(2 * most - deepest, 1.0);
 }
 
+//! Light halfway between that of the darkest and of the brightest line.
+double halfway(const vpStripeProfile &profile)
+{
+  const auto [least, most] = std::minmax_element(profile.light.begin(), profile.light.end());
+  return 0.5 * (*least + *most);
+}
+
 //! s, for how long a lamp is dark on end, once a period at least.
 double darkTime(const vpModulation &sent)
 {
@@ -79,16 +86,38 @@ double vpDeepestDip(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
   return std::max(deepestDip(light, noise), deepestDip(length, ragged));
 }
 
+double vpDeepestDip(const vpStripeProfile &profile)
+{
+  static const double sigmas = 2;
+  double noise = 0;
+  for (const double sigma : profile.sigma) {
+    noise = std::max(noise, sigma);
+  }
+  return deepestDip(profile.light, sigmas * noise);
+}
+
 double vpLongestLit(const vpStripeProfile &profile)
 {
-  const auto [least, most] = std::minmax_element(profile.light.begin(), profile.light.end());
-  const double bright = 0.5 * (*least + *most);
+  const double bright = halfway(profile);
   double longest = 0;
   size_t begun = 0;
   for (size_t i = 0; i < profile.light.size(); ++i) {
     begun = profile.light[i] > bright ? begun : i + 1;
     if (begun <= i) {
       longest = std::max(longest, std::abs(profile.time[i] - profile.time[begun]));
+    }
+  }
+  return longest;
+}
+
+size_t vpLongestDark(const vpStripeProfile &profile)
+{
+  const double bright = halfway(profile);
+  size_t longest = 0, last = profile.light.size(); // lit line
+  for (size_t i = 0; i < profile.light.size(); ++i) {
+    if (profile.light[i] > bright) {
+      longest = last < i ? std::max(longest, i - last - 1) : longest;
+      last = i;
     }
   }
   return longest;
@@ -102,8 +131,10 @@ double vpLongestPeriodLines(const vpLampMap &map, const vpVlpRig &rig)
     const double frequency = lamp.modulation.repetitionFrequency();
     longest = std::max(longest, frequency > 0 ? 1 / frequency : never);
   }
+  static const double blur = 0.2, sigmas = 5;
   const double line = std::abs(rig.lineTiming().meanLineTime());
-  return line > 0 ? longest / line : never;
+  return line > 0 ? longest / line * (1 + blur + sigmas * rig.shutter.rowTimeSigma / rig.shutter.rowTime)
+                  : never;
 }
 
 double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig)

@@ -46,6 +46,7 @@ struct VISP_EXPORT vpLedRoi {
   cv::Rect box;           // x: samples, y: lines
   double level = 0;       // grey value that its pixels exceed
   double lampness = 0;    // 0 to 1: how much the chords look like one whole lamp
+  bool steady = false;    // shines without dark lines, for longer than any lamp
   bool cutAcross = false; // touches the first or last sample
   bool cutAlong = false;  // touches the first or last line, or may go on beyond it after a dark stripe
 };

@@ -41,8 +41,6 @@ public:
   vpOutlineFitter outlineFitter;
   vpStripeAnalyzer stripeAnalyzer;
   vpLedIdRecognizer recognizer;
-  bool skipSteady =
-      false; // regions whose lines show no stripes at a first look have no outline but their box
   //! s, what shines on end for longer is steady light. By default as the map and the row time have it.
   double longestPeriod = 0;
 
@@ -74,7 +72,8 @@ public:
   //! \throw vpException (dimensionError) where \e I has not the size that the rig states.
   void check(const vpImage<unsigned char> &I) const;
 
-  //! Every lamp-like region of the last picture, the one with the largest lit area first.
+  //! Every lamp-like region of the last picture, the one with the largest lit area first. Of one without
+  //! stripes the outline is its box.
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
   //! Error of the rig's row time, by the lamps of the last picture.
