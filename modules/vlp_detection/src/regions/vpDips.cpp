@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <vector>
 
 #include <opencv2/core/hal/intrin.hpp>
@@ -33,23 +32,23 @@ public:
 
   /*!
     The next line. \param row The first of its 16 samples. \param black Of a strip. \param rest Share that is
-    left of the light in the shallowest dip, (1 - depth) / (1 + depth). \return Whether one has a dip within
-    \e longest lines of the one before.
+    left of the light in the shallowest dip, (1 - depth) / (1 + depth). \param tolerance That it is deeper.
+    \return Whether one has a dip within \e longest lines of the one before.
   */
-  bool add(const unsigned char *row, float line, float black, float rest, float noise, float longest)
+  bool add(const unsigned char *row, float line, float black, float rest, float tolerance, float longest)
   {
     const cv::v_float32x4 zero = cv::v_setzero_f32(),
                           sum = cv::v_cvt_f32(cv::v_reinterpret_as_s32(
                               cv::v_dotprod_expand(cv::v_load(row), cv::v_setall_u8(1)))),
                           light = cv::v_max(sum - cv::v_setall_f32(black), zero),
-                          share = cv::v_setall_f32(rest), tolerance = cv::v_setall_f32(noise);
+                          share = cv::v_setall_f32(rest), least = cv::v_setall_f32(tolerance);
     cv::v_float32x4 high = cv::v_load(m_high.data()), low = cv::v_load(m_low.data()),
                     last = cv::v_load(m_lastDip.data()), falling = cv::v_load(m_falling.data());
     const cv::v_float32x4 down = falling != zero, now = cv::v_setall_f32(line);
     high = cv::v_select(down, high, cv::v_max(high, light));
     low = cv::v_select(down, cv::v_min(low, light), light);
-    const cv::v_float32x4 falls = ~down & (light < share * high - tolerance),
-                          dips = down & (low < share * light - tolerance);
+    const cv::v_float32x4 falls = ~down & (light < share * high - least),
+                          dips = down & (low < share * light - least);
     const bool twice = cv::v_check_any(dips & (now - last <= cv::v_setall_f32(longest)));
     cv::v_store(m_high.data(), cv::v_select(dips, light, high));
     cv::v_store(m_low.data(), low);
@@ -59,6 +58,9 @@ public:
     return twice;
   }
 
+  //! Of the brightest, since its last dip.
+  float brightest() const { return *std::max_element(m_high.begin(), m_high.end()); }
+
 private:
   using Lanes = std::array<float, 4>;
   Lanes m_high, m_low; // since the last dip; since the light began to fall
@@ -67,16 +69,15 @@ private:
 };
 } // namespace
 
-bool vpMayBlink(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const vpBackground &dark,
+bool vpMayBlink(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, double dark, double noise,
                 double longestPeriod)
 {
-  static const double depth = 0.05, sigmas = 4, white = 255, sqrtStrip = 2;
+  static const double depth = 0.05, sigmas = 4, sqrtStrip = 2;
   if (lines.cols < width) {
     return true;
   }
-  const auto black = static_cast<float>(strip * dark.level),
-             rest = static_cast<float>((1 - depth) / (1 + depth)),
-             noise = static_cast<float>(sigmas * sqrtStrip * dark.noiseAt(white)),
+  const auto black = static_cast<float>(strip * dark), rest = static_cast<float>((1 - depth) / (1 + depth)),
+             tolerance = static_cast<float>(sigmas * sqrtStrip * noise),
              longest = static_cast<float>(longestPeriod);
   const int first = std::min(box.x, lines.cols - width), blocks = (box.br().x - first + width - 1) / width;
   std::vector<Strips> strips(static_cast<size_t>(blocks));
@@ -86,13 +87,17 @@ bool vpMayBlink(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const
   for (int y = box.y; y < box.br().y; ++y) {
     for (int k = 0; k < blocks; ++k) {
       const int x = std::min(first + k * width, lines.cols - width);
-      if (strips[static_cast<size_t>(k)].add(lines[y] + x, static_cast<float>(y), black, rest, noise,
+      if (strips[static_cast<size_t>(k)].add(lines[y] + x, static_cast<float>(y), black, rest, tolerance,
                                              longest)) {
         return true;
       }
     }
   }
-  return false;
+  // What is too dim for the shallowest stripes that are planned to show may blink, too.
+  static const double planned = 0.2; // depth
+  const double shows = tolerance / (rest - (1 - planned) / (1 + planned));
+  return std::none_of(strips.begin(), strips.end(),
+                      [shows](const Strips &each) { return each.brightest() > shows; });
 }
 
 END_VISP_NAMESPACE

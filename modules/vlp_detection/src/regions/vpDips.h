@@ -8,8 +8,6 @@
 #include <opencv2/core.hpp>
 #include <visp3/vlp_core/vpVlpNamespace.h>
 
-#include "vpBackground.h"
-
 BEGIN_VISP_NAMESPACE
 
 /*!
@@ -19,7 +17,7 @@ BEGIN_VISP_NAMESPACE
   and a rise again by a depth (a - b) / (a + b) of 0.05, and by 4 standard deviations of the noise. Strips are
   4 samples wide: of every lamp of 8 samples one lies inside it.
 */
-bool vpMayBlink(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const vpBackground &dark,
+bool vpMayBlink(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, double dark, double noise,
                 double longestPeriod);
 
 END_VISP_NAMESPACE

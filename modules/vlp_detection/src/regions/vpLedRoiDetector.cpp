@@ -337,7 +337,8 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
       for (int s : set.stripes) {
         box |= level.stripes[s].box;
       }
-      const bool steady = box.height > longestPeriod && !vpMayBlink(lines, box, dark, longestPeriod);
+      const bool steady = box.height > longestPeriod &&
+                          !vpMayBlink(lines, box, dark.level, dark.noiseAt(grey), longestPeriod);
       long noWork = 0;
       for (Group &group :
            Group::lampsOf(level, std::move(set), lines, dark.level, steady ? noWork : workLeft)) {

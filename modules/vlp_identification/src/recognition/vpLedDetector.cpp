@@ -264,7 +264,7 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
                                           const vpLedRoi &roi) const
 {
   const vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
-  if (vpDeepestDip(profile) < stripeAnalyzer.minModulation || vpLongestLit(profile) > longestPeriod) {
+  if (!profile.light.empty() && vpLongestLit(profile) > longestPeriod) {
     return {};
   }
   vpStripeFeatures features = analyzed(profile, fit.sound); // parts of a lamp show no whole word
@@ -334,15 +334,13 @@ vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const
 {
   Region region;
   region.roi = roi;
-  const bool steady =
-      roi.steady || vpDeepestDip(picture.grey, roi) < stripeAnalyzer.minModulation; // at a first look
-  region.fit = steady ? vpOutlineFitter::boxOf(roi)
-                      : outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(),
-                                          roi, m_blur);
+  region.fit = roi.steady ? vpOutlineFitter::boxOf(roi)
+                          : outlineFitter.fit(picture.grey, m_timing.linePositions(),
+                                              m_timing.samplePositions(), roi, m_blur);
   if (region.fit.outline.shape == vpLampOutline::Shape::ellipse) {
     m_blur = region.fit.blur;
   }
-  if (!steady) {
+  if (!roi.steady) {
     read(picture, region);
   }
   locate(picture, region);

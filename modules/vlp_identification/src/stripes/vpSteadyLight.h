@@ -5,23 +5,11 @@
 #ifndef vpSteadyLight_h
 #define vpSteadyLight_h
 
-#include <opencv2/core.hpp>
 #include <visp3/vlp_core/vpLampMap.h>
 #include <visp3/vlp_core/vpVlpRig.h>
-#include <visp3/vlp_detection/vpLedRoiDetector.h>
 #include <visp3/vlp_identification/vpStripeAnalyzer.h>
 
 BEGIN_VISP_NAMESPACE
-
-/*!
-  Depth of the deepest dip from line to line, 0 to 1, by the middles of a region's chords and by their lengths
-  alone: what has none is a tube, a panel, a window, or a single stripe that says nothing of any frequency.
-  1 for a dark gap between its lines, and where there are few lines.
-*/
-double vpDeepestDip(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi);
-
-//! The same of a profile, and none where it is empty: a single stripe says nothing of any frequency.
-double vpDeepestDip(const vpStripeProfile &profile);
 
 //! s, the longest stretch of a profile's lines that are nearer to its brightest than to its darkest one.
 double vpLongestLit(const vpStripeProfile &profile);
