@@ -290,8 +290,7 @@ vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, cons
   static const double unlike = 0.2; // depth
   const vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
   if (vpStripeStarts::peaks(agreed).size() < vpPatchwork::fewestStripes ||
-      agreed.depth() < vpPatchwork::least || vpLongestLit(agreed) > longestPeriod ||
-      vpLongestDark(agreed) > roiDetector.longestPeriod) {
+      agreed.depth() < vpPatchwork::least) {
     return {};
   }
   const vpStripeFeatures features = analyzed(agreed, false);

@@ -14,13 +14,6 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! Light halfway between that of the darkest and of the brightest line.
-double halfway(const vpStripeProfile &profile)
-{
-  const auto [least, most] = std::minmax_element(profile.light.begin(), profile.light.end());
-  return 0.5 * (*least + *most);
-}
-
 //! s, for how long a lamp is dark on end, once a period at least.
 double darkTime(const vpModulation &sent)
 {
@@ -39,26 +32,14 @@ double darkTime(const vpModulation &sent)
 
 double vpLongestLit(const vpStripeProfile &profile)
 {
-  const double bright = halfway(profile);
+  const auto [least, most] = std::minmax_element(profile.light.begin(), profile.light.end());
+  const double bright = 0.5 * (*least + *most);
   double longest = 0;
   size_t begun = 0;
   for (size_t i = 0; i < profile.light.size(); ++i) {
     begun = profile.light[i] > bright ? begun : i + 1;
     if (begun <= i) {
       longest = std::max(longest, std::abs(profile.time[i] - profile.time[begun]));
-    }
-  }
-  return longest;
-}
-
-size_t vpLongestDark(const vpStripeProfile &profile)
-{
-  const double bright = halfway(profile);
-  size_t longest = 0, last = profile.light.size(); // lit line
-  for (size_t i = 0; i < profile.light.size(); ++i) {
-    if (profile.light[i] > bright) {
-      longest = last < i ? std::max(longest, i - last - 1) : longest;
-      last = i;
     }
   }
   return longest;

@@ -14,10 +14,6 @@ BEGIN_VISP_NAMESPACE
 //! s, the longest stretch of a profile's lines that are nearer to its brightest than to its darkest one.
 double vpLongestLit(const vpStripeProfile &profile);
 
-//! The most lines on end that are nearer to a profile's darkest than to its brightest one, between two that
-//! are not.
-size_t vpLongestDark(const vpStripeProfile &profile);
-
 //! Lines of the picture that the longest period of the map's lamps takes; infinite without lamps or row time.
 double vpLongestPeriodLines(const vpLampMap &map, const vpVlpRig &rig);
 
