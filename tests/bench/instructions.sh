@@ -40,10 +40,11 @@ failed_with() # EXIT
   [ "$1" != 132 ] || echo "instructions.sh: valgrind does not know an instruction that a library uses on this processor" >&2
   exit $(($1 == 132 ? 77 : 1))
 }
-count() # SIZE whole|tracked|cluttered: millions of instructions per frame
+kinds=(whole tracked mixed panels tubes windows) # the last ones: whole frames of such ceilings
+count() # SIZE KIND: millions of instructions per frame
 {
-  local how=("$2" "$frames")
-  [ "$2" != cluttered ] || how=(whole "$frames" mixed)
+  local how=(whole "$frames" "$2")
+  case $2 in whole | tracked) how=("$2" "$frames") ;; esac
   valgrind -q --tool=callgrind --toggle-collect='vpCountedFrames*' --callgrind-out-file="$work/counts" \
     "$program" "$1" "${how[@]}" >"$work/said" 2>&1 || failed_with $?
   if ! grep -q "$frames frames, $frames with a position" "$work/said"; then
@@ -55,8 +56,8 @@ count() # SIZE whole|tracked|cluttered: millions of instructions per frame
 
 if $check; then
   failed=0
-  while read -r size whole tracked cluttered; do
-    for kind in whole tracked cluttered; do
+  while read -r size "${kinds[@]}"; do
+    for kind in "${kinds[@]}"; do
       counted=$(count "$size" "$kind")
       awk -v counted="$counted" -v before="${!kind}" -v what="$size $kind" 'BEGIN {
         printf "%s: %.3f million instructions a frame, %.3f before (%+.1f %%)\n", what, counted, before,
@@ -71,11 +72,12 @@ fi
 
 echo "Millions of instructions per frame, mean of $frames:"
 echo
-echo "| frames | whole frame | tracked | whole frame of a cluttered ceiling |"
-echo "|---|---|---|---|"
+echo "| frames | ${kinds[*]} |" | sed 's/\([a-z]\) \([a-z]\)/\1 | \2/g'
+echo "|---|---|---|---|---|---|---|"
 for size in 800x600 2048x1536; do
-  whole=$(count "$size" whole)
-  tracked=$(count "$size" tracked)
-  cluttered=$(count "$size" cluttered)
-  echo "| $size | $whole | $tracked | $cluttered |"
+  row="| $size |"
+  for kind in "${kinds[@]}"; do
+    row+=" $(count "$size" "$kind") |"
+  done
+  echo "$row"
 done
