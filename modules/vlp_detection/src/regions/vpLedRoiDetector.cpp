@@ -101,9 +101,9 @@ cv::Rect withNextStripes(const vpLedRoi &roi)
 }
 
 /*!
-  Says of a level's stripes in which of them nothing is looked for at higher levels: those of lamps for
-  certain. One beside a region that is no lamp, as the ceiling, may lack stripes that run together with that.
-  \param begun The level's first node of the tree.
+  Says of a level's stripes in which of them nothing is looked for at higher levels: steady ones, and those of
+  lamps for certain. One beside a region that is no lamp, as the ceiling, may lack stripes that run together
+  with that. \param begun The level's first node of the tree.
 */
 void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,
             const cv::Mat_<unsigned char> &lines, const vpBackground &dark)
@@ -126,6 +126,18 @@ void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,
       level.stripes[s].settled = last;
     }
   }
+}
+
+//! Whether stripes of one set shine for longer than any lamp does without going dark.
+bool isSteady(const vpLevelStripes &level, const vpLevelStripes::Set &set,
+              const cv::Mat_<unsigned char> &lines, const vpBackground &dark, double longestPeriod)
+{
+  cv::Rect box;
+  for (int s : set.stripes) {
+    box |= level.stripes[s].box;
+  }
+  return box.height > longestPeriod &&
+         !vpMayBlink(lines, box, dark.level, dark.noiseAt(level.grey), longestPeriod);
 }
 
 /*!
@@ -333,15 +345,10 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
     const auto begun = static_cast<int>(tree.size()); // the level's first node
     vpLevelStripes level(lines, grey, grey + peakFactor * dark.noiseAt(grey), first ? nullptr : &below);
     for (vpLevelStripes::Set &set : level.sets(maxDarkGap, longestPeriod)) {
-      cv::Rect box;
-      for (int s : set.stripes) {
-        box |= level.stripes[s].box;
-      }
-      const bool steady = box.height > longestPeriod &&
-                          !vpMayBlink(lines, box, dark.level, dark.noiseAt(grey), longestPeriod);
-      long noWork = 0;
+      const bool steady = isSteady(level, set, lines, dark, longestPeriod);
+      long none = 0; // what is steady is not taken apart
       for (Group &group :
-           Group::lampsOf(level, std::move(set), lines, dark.level, steady ? noWork : workLeft)) {
+           Group::lampsOf(level, std::move(set), lines, dark.level, steady ? none : workLeft)) {
         const int node = static_cast<int>(tree.size());
         group.roi.steady = steady;
         const int largest =

@@ -14,6 +14,16 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
+const double never = std::numeric_limits<double>::infinity();
+
+//! By how much longer a stretch of light or dark may look, as a share of it: by blur, and by the row time's
+//! error.
+double slack(const vpRollingShutter &shutter)
+{
+  static const double blur = 0.2, sigmas = 5;
+  return blur + sigmas * shutter.rowTimeSigma / shutter.rowTime;
+}
+
 //! s, for how long a lamp is dark on end, once a period at least.
 double darkTime(const vpModulation &sent)
 {
@@ -47,21 +57,17 @@ double vpLongestLit(const vpStripeProfile &profile)
 
 double vpLongestPeriodLines(const vpLampMap &map, const vpVlpRig &rig)
 {
-  static const double never = std::numeric_limits<double>::infinity();
   double longest = map.lamps.empty() ? never : 0; // s
   for (const vpLamp &lamp : map.lamps) {
     const double frequency = lamp.modulation.repetitionFrequency();
     longest = std::max(longest, frequency > 0 ? 1 / frequency : never);
   }
-  static const double blur = 0.2, sigmas = 5;
   const double line = std::abs(rig.lineTiming().meanLineTime());
-  return line > 0 ? longest / line * (1 + blur + sigmas * rig.shutter.rowTimeSigma / rig.shutter.rowTime)
-                  : never;
+  return line > 0 ? longest * (1 + slack(rig.shutter)) / line : never;
 }
 
 double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig)
 {
-  static const double blur = 0.2, sigmas = 5, never = std::numeric_limits<double>::infinity();
   const vpRollingShutter &shutter = rig.shutter;
   if (!(shutter.rowTime > 0)) {
     return never;
@@ -77,7 +83,7 @@ double vpLongestPeriod(const vpLampMap &map, const vpVlpRig &rig)
     const double dark = darkTime(lamp.modulation);
     longest = std::max(longest, dark > shown ? 1 / lamp.modulation.repetitionFrequency() : never);
   }
-  return longest * (1 + blur + sigmas * shutter.rowTimeSigma / shutter.rowTime);
+  return longest * (1 + slack(shutter));
 }
 
 END_VISP_NAMESPACE

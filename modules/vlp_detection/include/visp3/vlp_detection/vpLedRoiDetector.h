@@ -63,8 +63,9 @@ struct VISP_EXPORT vpLedRoi {
   joined by their halos all get the level that suits them. The ceiling is such a region too, where it is
   brighter than the darkest part of the picture, and may have the shape of a lamp; it does not blink as the
   lamps in front of it do, and these are chosen then. Small parts of a halo and of a larger region are left
-  out at the end. Where noise is so strong that single pixels do not show a lamp, means of several along the
-  lines are used as well.
+  out at the end. What shines on for longer than a period of the slowest lamp, and dips in no strip of its
+  samples as a lamp does, is steady: it is not taken apart, and nothing is looked for in it. Where noise is so
+  strong that single pixels do not show a lamp, means of several along the lines are used as well.
 */
 class VISP_EXPORT vpLedRoiDetector
 {
@@ -74,9 +75,9 @@ public:
   double maxDarkGap = 0.6; // longest dark gap inside a lamp, as a share of its widest chord
   //! lines, of the slowest lamp there may be: no stripe of any, lit or dark, is longer.
   double longestPeriod = std::numeric_limits<double>::infinity();
-  int minWidth = 8;        // samples
-  int minHeight = 6;       // lines
-  double minContrast = 3;  // grey levels, lowest level above the background
+  int minWidth = 8;       // samples
+  int minHeight = 6;      // lines
+  double minContrast = 3; // grey levels, lowest level above the background
 
   std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines) const;
 
