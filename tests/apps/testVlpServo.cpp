@@ -164,6 +164,8 @@ TEST(VlpServo, BadUsage)
   expectServoRefuses(with(good, {"--rig", folder / "rig.yaml"}), {"rig.yaml"});
   folder.write("file", "text");
   expectServoRefuses(with(good, {"--log", folder / "file"}), {"exists, expected a new or empty"});
+  // Before anything moves.
+  expectServoRefuses(with(good, {"--log", "/proc/run"}), {"/proc/run: the folder cannot be made"});
   expectServoRefuses({"--robot", "sim", "--scenario", folder / "path.yaml", "--path", folder / "path.yaml"},
                      {"path.yaml"});
 }

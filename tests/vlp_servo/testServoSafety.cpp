@@ -34,12 +34,19 @@ vpVlpLocation tracked(double sigma = 1e-3)
   return location;
 }
 
+//! A picture of that very time.
+void see(vpServoSafety &safety, double time, vpVlpLocation location)
+{
+  location.timestamp = time;
+  safety.addPicture(time, location);
+}
+
 //! One that has seen enough to drive at time 0.
 vpServoSafety driving(const vpServoSafetySettings &settings = {})
 {
   vpServoSafety safety(settings, limits, true);
   for (int i = 0; i < settings.confirmations; ++i) {
-    safety.addPicture(0, tracked());
+    see(safety, 0, tracked());
   }
   EXPECT_EQ(safety.permit(0, fixAt(0, 0, 0)).share, 1);
   return safety;
@@ -52,20 +59,20 @@ TEST(ServoSafety, NothingMovesBeforeTheFirstConfirmedFix)
   EXPECT_EQ(safety.permit(0, vpVlpFix()).share, 0);
   EXPECT_EQ(safety.permit(0, fixAt(0, 0, 0)).share, 0); // a pose, and no picture
   for (int i = 0; i < 2; ++i) {
-    safety.addPicture(0.1, tracked());
+    see(safety, 0.1, tracked());
     EXPECT_EQ(safety.permit(0.1, fixAt(0, 0, 0)).share, 0);
   }
-  safety.addPicture(0.2, vpVlpLocation()); // not in a row
+  see(safety, 0.2, vpVlpLocation()); // not in a row
   for (int i = 0; i < 2; ++i) {
-    safety.addPicture(0.3, tracked());
+    see(safety, 0.3, tracked());
     EXPECT_EQ(safety.permit(0.3, fixAt(0, 0, 0)).share, 0);
   }
   vpVlpLocation single = tracked();
   single.tracked = false; // of one picture alone
-  safety.addPicture(0.3, single);
+  see(safety, 0.3, single);
   EXPECT_EQ(safety.permit(0.3, fixAt(0, 0, 0)).share, 0);
   for (int i = 0; i < 3; ++i) {
-    safety.addPicture(0.4, tracked());
+    see(safety, 0.4, tracked());
   }
   EXPECT_EQ(safety.permit(0.4, fixAt(0, 0, 0)).share, 1);
 }
@@ -77,14 +84,14 @@ TEST(ServoSafety, StandsWhereLampsShowAnotherPlaceThanTheMotion)
     vpVlpLocation elsewhere = tracked();
     elsewhere.relocated = !ambiguous;
     elsewhere.fix.ambiguous = ambiguous;
-    safety.addPicture(0.1, elsewhere);
+    see(safety, 0.1, elsewhere);
     const vpServoPermit permit = safety.permit(0.1, fixAt(0, 0, 0));
     EXPECT_EQ(permit.share, 0);
     EXPECT_NE(permit.reason.find("another place"), std::string::npos) << permit.reason;
     const int confirmations = vpServoSafetySettings().confirmations;
     for (int i = 0; i < confirmations; ++i) {
       EXPECT_EQ(safety.permit(0.2, fixAt(0, 0, 0)).share, 0) << i;
-      safety.addPicture(0.2, tracked());
+      see(safety, 0.2, tracked());
     }
     EXPECT_EQ(safety.permit(0.2, fixAt(0, 0, 0)).share, 1);
   }
@@ -114,11 +121,11 @@ TEST(ServoSafety, RecoversOnlyOnceThePoseIsConfirmedAnew)
   EXPECT_EQ(safety.permit(0.1, fixAt(0, 0, 0, 1)).share, 0);
   EXPECT_EQ(safety.permit(0.1, fixAt(0, 0, 0)).share, 0);
   for (int i = 0; i < 5; ++i) {
-    safety.addPicture(0.2, tracked(0.03)); // below the limit, and not below the lower one
+    see(safety, 0.2, tracked(0.03)); // below the limit, and not below the lower one
   }
   EXPECT_EQ(safety.permit(0.2, fixAt(0, 0, 0)).share, 0);
   for (int i = 0; i < 3; ++i) {
-    safety.addPicture(0.3, tracked());
+    see(safety, 0.3, tracked());
   }
   EXPECT_EQ(safety.permit(0.3, fixAt(0, 0, 0)).share, 1);
 }
@@ -127,7 +134,7 @@ TEST(ServoSafety, CoastsThroughPicturesWithoutLamps)
 {
   vpServoSafety safety = driving();
   for (double now = 0.1; now < 2; now += 0.1) {
-    safety.addPicture(now, vpVlpLocation());
+    see(safety, now, vpVlpLocation());
     EXPECT_EQ(safety.permit(now, fixAt(0, 0, 0)).share, 1); // its covariance still allows
   }
 }
@@ -143,6 +150,83 @@ TEST(ServoSafety, StandsWhereNoPictureComesAndGivesUp)
   const vpServoPermit permit = safety.permit(late + settings.giveUp + 0.1, fixAt(0, 0, 0));
   EXPECT_TRUE(permit.final);
   EXPECT_NE(permit.reason.find("no picture"), std::string::npos);
+}
+
+TEST(ServoSafety, APictureOfAnotherTimeCountsForNone)
+{
+  const vpServoSafetySettings settings;
+  for (const double age : {-0.01, settings.pictureTimeout + 0.01, -10.0, 10.0}) {
+    vpServoSafety safety = driving();
+    vpVlpLocation picture = tracked();
+    picture.timestamp = 0.1 - age;
+    safety.addPicture(0.1, picture);
+    const vpServoPermit permit = safety.permit(0.1, fixAt(0, 0, 0));
+    EXPECT_EQ(permit.share, 0) << age;
+    EXPECT_NE(permit.reason.find(age < 0 ? "ahead of the clock" : "s old"), std::string::npos)
+        << permit.reason;
+    for (int i = 0; i < settings.confirmations; ++i) {
+      EXPECT_EQ(safety.permit(0.2, fixAt(0, 0, 0)).share, 0) << i;
+      see(safety, 0.2, tracked());
+    }
+    EXPECT_EQ(safety.permit(0.2, fixAt(0, 0, 0)).share, 1);
+  }
+}
+
+// Whatever its covariance says. Half of it is left to wheels that slip.
+TEST(ServoSafety, APoseThatMovesOtherwiseThanTheWheelsEndsTheRun)
+{
+  const vpServoSafetySettings settings;
+  const std::pair<vpVlpFix, bool> cases[] = {{fixAt(0, settings.sigmaStop / 2, 0), false},
+                                             {fixAt(0, settings.sigmaStop + 1e-3, 0), true},
+                                             {fixAt(0, 0, settings.yawStop / 2), false},
+                                             {fixAt(0, 0, settings.yawStop + 1e-3), true},
+                                             {fixAt(0, settings.sigmaStop + 1e-3, 0, 0.015), false}};
+  for (const auto &[fix, ends] : cases) {
+    vpServoSafety safety(settings, limits, true);
+    safety.addOdometry({0, 0, 0});
+    for (int i = 0; i < settings.confirmations; ++i) {
+      see(safety, 0, tracked());
+    }
+    EXPECT_EQ(safety.permit(0, fixAt(0, 0, 0)).share, 1);
+    const vpServoPermit permit = safety.permit(0.02, fix);
+    EXPECT_EQ(permit.final, ends) << permit.reason;
+    EXPECT_EQ(permit.reason.find("otherwise than the wheels") != std::string::npos, ends) << permit.reason;
+  }
+}
+
+// The other way round: the wheels turn, and the pose stays where it is.
+TEST(ServoSafety, WheelsThatTurnOnTheSpotEndTheRun)
+{
+  vpServoSafety safety = driving();
+  double time = 0;
+  for (; time < 5 && !safety.permit(time, fixAt(0, 0, 0)).final; time += 0.02) {
+    safety.addOdometry({time, 0.2, 0});
+    see(safety, time, tracked());
+  }
+  EXPECT_NEAR(time, vpServoSafetySettings().sigmaStop / 0.2, 0.05);
+}
+
+TEST(ServoSafety, AClockThatIsSetBackEndsTheRun)
+{
+  vpServoSafety safety = driving();
+  EXPECT_EQ(safety.permit(0.02, fixAt(0, 0, 0)).share, 1);
+  const vpServoPermit permit = safety.permit(-10, fixAt(0, 0, 0));
+  EXPECT_TRUE(permit.final);
+  EXPECT_NE(permit.reason.find("set back by 10.02 s"), std::string::npos) << permit.reason;
+}
+
+TEST(ServoSafety, ACovarianceThatIsNoneIsAStand)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Eigen::Index axis : {0, 5}) {
+    for (const double variance : {nan, -1.0, std::numeric_limits<double>::infinity()}) {
+      vpServoSafety safety = driving();
+      vpVlpFix fix = fixAt(0, 0, 0);
+      fix.covariance.diagonal().head<2>().setConstant(axis == 0 ? variance : 1e-6);
+      fix.covariance(5, 5) = axis == 5 ? variance : 1e-6;
+      EXPECT_EQ(safety.permit(0.02, fix).share, 0) << axis << " " << variance;
+    }
+  }
 }
 
 TEST(ServoSafety, LowBatteryAndFailuresAreForGood)

@@ -71,6 +71,7 @@ std::vector<vpLocatedPicture> vpServoLoop::sense(double now)
   const vpOdometry odometry = m_base.odometry();
   if (m_run.odometry.empty() || odometry.timestamp > m_run.odometry.back().timestamp) {
     m_poses.addOdometry(odometry);
+    m_safety.addOdometry(odometry);
     m_run.odometry.push_back(odometry);
   }
   std::vector<vpLocatedPicture> pictures = m_poses.look(now);

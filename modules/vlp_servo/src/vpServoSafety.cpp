@@ -10,6 +10,7 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_servo/vpPoseSource.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -37,6 +38,12 @@ std::string millimetres(double metres)
 {
   return std::to_string(std::lround(1000 * metres)) + " mm";
 }
+
+//! To thousandths.
+std::string rounded(double value)
+{
+  return vpNumberText(std::round(1000 * value) / 1000);
+}
 } // namespace
 
 void vpServoSafetySettings::check() const
@@ -44,7 +51,8 @@ void vpServoSafetySettings::check() const
   const std::pair<const char *, double> positive[] = {
       {"acceleration", acceleration},      {"braking", braking},  {"turn acceleration", turnAcceleration},
       {"sigma slow", sigmaSlow},           {"yaw slow", yawSlow}, {"confirmations", confirmations},
-      {"picture timeout", pictureTimeout}, {"give up", giveUp}};
+      {"picture timeout", pictureTimeout}, {"give up", giveUp},   {"compare time", compareTime},
+      {"way deviations", wayDeviations}};
   for (const auto &[name, value] : positive) {
     if (!(value > 0 && std::isfinite(value))) {
       throw vpException(vpException::badValue, std::string("safety: ") + name + ": " + vpNumberText(value) +
@@ -71,8 +79,16 @@ vpServoSafety::vpServoSafety(const vpServoSafetySettings &settings, const vpBase
 
 void vpServoSafety::addPicture(double known, const vpVlpLocation &location)
 {
-  m_lastPicture = known;
-  const bool good = location.fix.valid && !location.fix.ambiguous && location.tracked &&
+  const double age = known - location.timestamp; // s
+  const bool current = age >= 0 && age <= m_settings.pictureTimeout;
+  m_misdated.clear();
+  if (!current) {
+    m_misdated = age < 0 ? "the picture is dated " + rounded(-age) + " s ahead of the clock"
+                         : "the picture is " + rounded(age) + " s old, at most " +
+                               vpNumberText(m_settings.pictureTimeout) + " are allowed";
+  }
+  m_lastPicture = current ? known : m_lastPicture;
+  const bool good = current && location.fix.valid && !location.fix.ambiguous && location.tracked &&
                     placeSigma(location.fix) < m_settings.sigmaSlow &&
                     yawSigma(location.fix) < m_settings.yawSlow;
   m_confirmed = good ? m_confirmed + 1 : 0;
@@ -98,16 +114,19 @@ std::string vpServoSafety::unsafe(double now, const vpVlpFix &fix) const
   if (!fix.valid) {
     return "no pose: " + fix.refusal;
   }
-  if (!fix.covariance.allFinite() || placeSigma(fix) > m_settings.sigmaStop) {
+  if (!(fix.covariance.allFinite() && placeSigma(fix) <= m_settings.sigmaStop)) {
     return "the position is uncertain by " + millimetres(placeSigma(fix)) + ", at most " +
            millimetres(m_settings.sigmaStop) + " are allowed";
   }
-  if (yawSigma(fix) > m_settings.yawStop) {
-    return "the yaw is uncertain by " + vpNumberText(std::round(1000 * yawSigma(fix)) / 1000) +
-           " rad, at most " + vpNumberText(m_settings.yawStop) + " are allowed";
+  if (!(yawSigma(fix) <= m_settings.yawStop)) {
+    return "the yaw is uncertain by " + rounded(yawSigma(fix)) + " rad, at most " +
+           vpNumberText(m_settings.yawStop) + " are allowed";
   }
   if (m_relocated) {
     return "the lamps show another place than the base's motion leads to, and no third lamp bears it out";
+  }
+  if (!m_misdated.empty()) {
+    return m_misdated;
   }
   if (m_needsPictures && !m_lastPicture) {
     return "no picture yet";
@@ -118,17 +137,59 @@ std::string vpServoSafety::unsafe(double now, const vpVlpFix &fix) const
   return "";
 }
 
+void vpServoSafety::addOdometry(const vpOdometry &sample)
+{
+  if (m_odometry) {
+    m_oMb = vpDrivenOn(m_oMb, {sample.v, sample.w}, sample.timestamp - m_odometry->timestamp);
+  }
+  m_odometry = sample;
+}
+
+//! Why the pose's way cannot be that of the wheels, or empty.
+std::string vpServoSafety::leavesWheels(double now, const vpVlpFix &fix)
+{
+  if (!m_needsPictures || !m_odometry) {
+    return "";
+  }
+  m_places.push_back({now, fix, m_oMb});
+  while (m_places.front().time < now - m_settings.compareTime) {
+    m_places.pop_front();
+  }
+  const Place &before = m_places.front();
+  const vpHomogeneousMatrix driven = before.oMb.inverse() * m_oMb;
+  const vpHomogeneousMatrix off = driven.inverse() * before.fix.wMb.inverse() * fix.wMb;
+  const double place = std::hypot(off[0][3], off[1][3]), turn = std::abs(std::atan2(off[1][0], off[0][0]));
+  const double mostPlace = std::max(
+      m_settings.sigmaStop, m_settings.wayDeviations * std::hypot(placeSigma(before.fix), placeSigma(fix)));
+  const double mostTurn = std::max(m_settings.yawStop, m_settings.wayDeviations *
+                                                           std::hypot(yawSigma(before.fix), yawSigma(fix)));
+  if (place <= mostPlace && turn <= mostTurn) {
+    return "";
+  }
+  return "the pose moves otherwise than the wheels, by " + millimetres(place) + " and " + rounded(turn) +
+         " rad within " + rounded(now - before.time) + " s, at most " + millimetres(mostPlace) + " and " +
+         rounded(mostTurn) + " rad are allowed";
+}
+
 vpServoPermit vpServoSafety::permit(double now, const vpVlpFix &fix)
 {
+  if (m_now && now < *m_now) {
+    fail("the clock was set back by " + rounded(*m_now - now) + " s");
+  }
+  m_now = now;
   if (m_battery && *m_battery < m_settings.batteryLow) {
     fail("the battery is low: " + vpNumberText(*m_battery) + " V, at least " +
          vpNumberText(m_settings.batteryLow) + " V are needed");
   }
   std::string reason = unsafe(now, fix);
+  if (!reason.empty()) {
+    m_places.clear(); // while it stands, somebody may put it elsewhere
+  } else if (const std::string off = leavesWheels(now, fix); !off.empty()) {
+    fail(off);
+  }
   if (reason.empty() && leavesFence(fix)) {
-    fail("the base is about to leave the fence at x " +
-         vpNumberText(std::round(1000 * fix.wMb[0][3]) / 1000) + " m, y " +
-         vpNumberText(std::round(1000 * fix.wMb[1][3]) / 1000) + " m");
+    fail("the base is about to leave the fence at x " + rounded(fix.wMb[0][3]) + " m, y " +
+         rounded(fix.wMb[1][3]) + " m");
   }
   if (reason.empty() && m_needsPictures && !m_moving && m_confirmed < m_settings.confirmations) {
     reason = "the pose is not confirmed yet";

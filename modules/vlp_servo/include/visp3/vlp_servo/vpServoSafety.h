@@ -5,6 +5,7 @@
 #ifndef vpServoSafety_h
 #define vpServoSafety_h
 
+#include <deque>
 #include <optional>
 #include <string>
 
@@ -24,7 +25,9 @@ struct VISP_EXPORT vpServoSafetySettings {
   double yawSlow = 0.1;         // rad, likewise of the yaw
   double yawStop = 0.2;         // rad
   int confirmations = 3;        // pictures in a row with a tracked pose, before it moves, and after each wait
-  double pictureTimeout = 0.5;  // s without a picture, after which it stands
+  double pictureTimeout = 0.5;  // s without a picture, after which it stands; an older one counts for none
+  double compareTime = 2;       // s, over which the pose's way has to be that of the wheels
+  double wayDeviations = 5;     // standard deviations of both ends, that it may be off
   double giveUp = 20;           // s of waiting, after which the run ends
   double farthest = 0.5;        // m off the reference, beyond which the run ends: the base does not follow
   double batteryLow = 11;       // V, of the TurtleBot3's three cells, below which the run ends
@@ -46,11 +49,16 @@ struct VISP_EXPORT vpServoPermit {
   Limits and stops the follower's commands before they reach the base.
 
   Before the first confirmed fix nothing moves. Where the pose becomes uncertain, by its covariance, or
-  pictures stay away for long, the base brakes to a stand and waits; once as many pictures as at the start
-  have a tracked pose whose covariance is below the lower limits, it goes on. Between pictures, and through
-  pictures without lamps, it may drive on odometry as long as the covariance allows. Leaving the fence, a low
-  battery, a camera that is gone, a base that does not follow, a command that is no number, and a wait that is
+  pictures stay away for long or are of another time than now, the base brakes to a stand and waits; once as
+  many pictures as at the start have a tracked pose whose covariance is below the lower limits, it goes on.
+  Between pictures, and through pictures without lamps, it may drive on odometry as long as the covariance
+  allows. Leaving the fence, a low battery, a camera that is gone, a base that does not follow, a pose that
+  moves otherwise than the wheels, a clock that is set back, a command that is no number, and a wait that is
   too long end the run.
+
+  Pose and wheels: the way of the pose within the last compareTime less that of the odometry is the error of
+  both poses and of the wheels. More than wayDeviations standard deviations of both poses is no chance, unless
+  it is less than sigmaStop or yawStop, which the wheels may slip.
 */
 class VISP_EXPORT vpServoSafety
 {
@@ -58,8 +66,11 @@ public:
   //! \param needsPictures False: the pose does not come of a camera. \throw vpException (badValue).
   vpServoSafety(const vpServoSafetySettings &settings, const vpBaseLimits &limits, bool needsPictures);
 
-  //! A picture whose pose became known at \e known, s.
+  //! A picture whose pose became known at \e known, s, on the clock of its time stamp.
   void addPicture(double known, const vpVlpLocation &location);
+
+  //! Of the wheels, each sample once.
+  void addOdometry(const vpOdometry &sample);
 
   //! The pose \e fix is that of \e now (s) or a little later.
   vpServoPermit permit(double now, const vpVlpFix &fix);
@@ -81,7 +92,15 @@ public:
   vpBaseVelocity limited(const vpBaseVelocity &wanted, double dt);
 
 private:
+  //! Where pose and odometry had the base.
+  struct Place {
+    double time = 0; // s
+    vpVlpFix fix;
+    vpHomogeneousMatrix oMb; // from an origin o of its own
+  };
+
   std::string unsafe(double now, const vpVlpFix &fix) const;
+  std::string leavesWheels(double now, const vpVlpFix &fix);
   bool leavesFence(const vpVlpFix &fix) const;
   double share(const vpVlpFix &fix) const;
 
@@ -92,6 +111,11 @@ private:
   bool m_relocated = false;                         // the latest picture's place is not confirmed
   int m_confirmed = 0;                              // pictures in a row
   bool m_moving = false;                            // permitted to
+  std::string m_misdated;                           // why the latest picture is not one of now, or empty
+  std::optional<double> m_now;                      // s, of the last permit
+  std::optional<vpOdometry> m_odometry;             // the last sample
+  vpHomogeneousMatrix m_oMb;                        // of then
+  std::deque<Place> m_places;                       // since it has moved, for as long as compareTime
   std::optional<double> m_lastPicture, m_waitBegan; // s
   std::optional<double> m_endBegan;                 // s, when the reference was at the end
   std::optional<double> m_battery;                  // V
