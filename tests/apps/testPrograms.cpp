@@ -25,5 +25,5 @@ TEST_P(Programs, SayTheirVersion)
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Programs,
-                         testing::Values("vlp-calibrate", "vlp-evaluate", "vlp-lamp", "vlp-locate", "vlp-plan",
-                                         "vlp-servo", "vlp-simulate"));
+                         testing::Values("vlp-calibrate", "vlp-evaluate", "vlp-lamp", "vlp-locate",
+                                         "vlp-plan", "vlp-servo", "vlp-simulate"));
