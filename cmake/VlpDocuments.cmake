@@ -47,9 +47,9 @@ if(DOXYGEN_FOUND)
   set(DOXYGEN_WARN_LOGFILE "${PROJECT_BINARY_DIR}/doc-warnings.txt")
   set(DOXYGEN_FILTER_PATTERNS "*.h=${PROJECT_SOURCE_DIR}/cmake/doxygen-header.sh")
   file(GLOB includes CONFIGURE_DEPENDS modules/*/include)
-  doxygen_add_docs(doc modules/modules.dox ${includes} README.md BENCHMARK.md CONTRIBUTING.md apps/README.md apps/options.md
+  doxygen_add_docs(doc modules/modules.dox ${includes} README.md BENCHMARK.md CONTRIBUTING.md SECURITY.md apps/README.md apps/options.md
                    apps/ros/README.md apps/lamp-firmware/README.md
-                   data/README.md tutorial tests/bench modules/vlp_localization/src/MODEL.md
+                   data/README.md tutorial tests/bench modules/vlp_localization/src/MODEL.md modules/vlp_servo/HAZARDS.md tests/fuzz/README.md
                    COMMENT "Reference in ${PROJECT_BINARY_DIR}/html")
   install(DIRECTORY "${PROJECT_BINARY_DIR}/html" DESTINATION "${documents}" COMPONENT doc OPTIONAL)
 endif()
