@@ -57,7 +57,8 @@ double vpLongestLit(const vpStripeProfile &profile)
 
 double vpLongestPeriodLines(const vpLampMap &map, const vpVlpRig &rig)
 {
-  double longest = map.lamps.empty() ? never : 0; // s
+  static const double slowest = 500; // Hz, of lamps that people may see (vpLedIdPlanner::flicker)
+  double longest = map.lamps.empty() ? never : 1 / slowest; // s
   for (const vpLamp &lamp : map.lamps) {
     const double frequency = lamp.modulation.repetitionFrequency();
     longest = std::max(longest, frequency > 0 ? 1 / frequency : never);

@@ -14,7 +14,10 @@ BEGIN_VISP_NAMESPACE
 //! s, the longest stretch of a profile's lines that are nearer to its brightest than to its darkest one.
 double vpLongestLit(const vpStripeProfile &profile);
 
-//! Lines of the picture that the longest period of the map's lamps takes; infinite without lamps or row time.
+/*!
+  Lines of the picture that the longest period of the map's lamps takes, 2 ms at least: a lamp that the map
+  does not know is shown whole, and noise may hide a stripe. Infinite without lamps or row time.
+*/
 double vpLongestPeriodLines(const vpLampMap &map, const vpVlpRig &rig);
 
 /*!
