@@ -53,7 +53,8 @@ The robot does not move before three pictures in a row have shown a tracked pose
 uncertain by more than 20 mm. It stands and waits beyond 50 mm, where no picture of the last 0.5 s comes, and where
 a pose is relocated or ambiguous; standard error says why. The run ends after 20 s of waiting, at the fence, with a
 low battery, where the pose moves otherwise than the wheels, where the clock is set back, and on any error of the
-base. It ends too on Ctrl-C, SIGTERM, any key in the terminal and a click in the window. The base is told to stop in each of these cases.
+base. It ends too on Ctrl-C, SIGTERM, any key in the terminal and a click in the window. The base is told to stop
+in each of these cases.
 
 Exit code: 0 the path was driven to its end, or somebody ended it; 2 bad usage or bad input; 3 the run failed,
 or --list-robots found none.

@@ -16,6 +16,7 @@ BEGIN_VISP_NAMESPACE
   where there is room for two no two within a period, is a panel, a tube, a window, a wall. A dip is a fall
   and a rise again by a depth (a - b) / (a + b) of 0.05, and by 4 standard deviations of the noise. Strips are
   4 samples wide: of every lamp of 8 samples one lies inside it.
+  \param dark Grey value where there is no light. \param noise Grey levels, standard deviation of a pixel.
 */
 bool vpMayBlink(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, double dark, double noise,
                 double longestPeriod);

@@ -72,8 +72,8 @@ public:
   //! \throw vpException (dimensionError) where \e I has not the size that the rig states.
   void check(const vpImage<unsigned char> &I) const;
 
-  //! Every lamp-like region of the last picture, the one with the largest lit area first. Of one without
-  //! stripes the outline is its box.
+  //! Every lamp-like region of the last picture, the one with the largest lit area first. Of a steady
+  //! one (vpLedRoi) the outline is its box.
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
   //! Error of the rig's row time, by the lamps of the last picture.
