@@ -19,7 +19,8 @@
 
 #include "opencr/vpRealTimeBoard.h"
 
-//! The camera on a robot in real time: a picture is there once its last line was read, and drawn.
+//! The camera on a robot in real time: a picture is there once its last line was read, and drawn. Those that
+//! a slow machine does not fetch in time are gone.
 class vpBoardCamera : public vpFrameSource
 {
 public:
@@ -33,8 +34,12 @@ public:
   bool next(vpVlpFrame &frame) override
   {
     constexpr double readout = 0.035; // s, more than the rig's 600 lines of 43 us take
-    const double read = m_begin + static_cast<double>(m_pictures++) * m_frameTime + readout;
-    std::this_thread::sleep_for(std::chrono::duration<double>(std::max(read - m_clock.now(), 0.0)));
+    const double late = m_clock.now() - (m_begin + static_cast<double>(m_pictures) * m_frameTime + readout);
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::max(-late, 0.0)));
+    for (double behind = late; behind > m_frameTime; behind -= m_frameTime, ++m_pictures) {
+      m_simulation.skip();
+    }
+    ++m_pictures;
     m_simulation.next(frame);
     frame.timestamp += m_begin;
     return true;
