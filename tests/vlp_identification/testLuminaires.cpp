@@ -139,7 +139,7 @@ TEST(Luminaires, ClippingMovesNoEdgeOfAStripe)
   double squares = 0, mostDuty = 0;
   static const int phases = 20;
   for (int k = 0; k < phases; ++k) {
-    const Luminaire lamp{{209.7, 160.4}, twiceWhite, 450, 0.4, static_cast<double>(k) / phases};
+    const Luminaire lamp{{209.7, 160.4}, twiceWhite, 520, 0.4, static_cast<double>(k) / phases};
     const std::vector<vpLampObservation> seen = seenIn({lamp});
     ASSERT_EQ(seen.size(), 1u) << "phase " << lamp.phase;
     squares += std::pow(seen[0].features.frequency - lamp.frequency, 2);

@@ -249,15 +249,41 @@ void vpLedDetector::recognise(std::vector<Region> &regions)
   }
 }
 
+//! The analyser for lamps that are as fast as the detector looks for.
+vpStripeAnalyzer vpLedDetector::analyzer() const
+{
+  vpStripeAnalyzer analyzer = stripeAnalyzer;
+  analyzer.minFrequency = 1 / (roiDetector.longestPeriod * std::abs(m_timing.meanLineTime()));
+  return analyzer;
+}
+
 //! What a profile says under the exposure as it is known. \param unknownWords Whether words of formats that
 //! the map does not have are looked for.
 vpStripeFeatures vpLedDetector::analyzed(vpStripeProfile profile, bool unknownWords) const
 {
   profile.exposure = m_exposure.exposure();
   profile.logExposureSigma = m_exposure.logSigma();
-  vpStripeAnalyzer analyzer = stripeAnalyzer;
-  analyzer.searchUnknownWords = analyzer.searchUnknownWords && unknownWords;
-  return analyzer.analyze(profile);
+  vpStripeAnalyzer by = analyzer();
+  by.searchUnknownWords = by.searchUnknownWords && unknownWords;
+  return by.analyze(profile);
+}
+
+//! Whether a region has stripes at all, by its middle or by what its columns agree on.
+bool vpLedDetector::mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const
+{
+  if (roi.steady) {
+    return false;
+  }
+  const vpOutlineFit box = vpOutlineFitter::boxOf(roi);
+  return analyzer().blinks(vpStripeProfile::along(picture.grey, m_timing, box, roi)) ||
+         isPatchwork(vpStripeProfile::agreedByColumns(picture.grey, m_timing, box, roi));
+}
+
+//! Whether what columns agree on are a lamp's stripes.
+bool vpLedDetector::isPatchwork(const vpStripeProfile &agreed) const
+{
+  return vpStripeStarts::peaks(agreed).size() >= vpPatchwork::fewestStripes &&
+         agreed.depth() >= vpPatchwork::least && analyzer().blinks(agreed);
 }
 
 vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
@@ -289,8 +315,7 @@ vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, cons
 {
   static const double unlike = 0.2; // depth
   const vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
-  if (vpStripeStarts::peaks(agreed).size() < vpPatchwork::fewestStripes ||
-      agreed.depth() < vpPatchwork::least) {
+  if (!isPatchwork(agreed)) {
     return {};
   }
   const vpStripeFeatures features = analyzed(agreed, false);
@@ -333,13 +358,14 @@ vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const
 {
   Region region;
   region.roi = roi;
-  region.fit = roi.steady ? vpOutlineFitter::boxOf(roi)
-                          : outlineFitter.fit(picture.grey, m_timing.linePositions(),
-                                              m_timing.samplePositions(), roi, m_blur);
+  const bool blinks = mayBlink(picture, roi); // else its outline is no matter
+  region.fit = blinks ? outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(),
+                                          roi, m_blur)
+                      : vpOutlineFitter::boxOf(roi);
   if (region.fit.outline.shape == vpLampOutline::Shape::ellipse) {
     m_blur = region.fit.blur;
   }
-  if (!roi.steady) {
+  if (blinks) {
     read(picture, region);
   }
   locate(picture, region);

@@ -14,6 +14,8 @@
 #include <limits>
 #include <vector>
 
+#include <Eigen/Core>
+#include <opencv2/imgproc.hpp>
 #include <visp3/vlp_core/vpBrighter.h>
 
 BEGIN_VISP_NAMESPACE
@@ -28,28 +30,27 @@ double medianOf(std::vector<double> &values)
   return *middle;
 }
 
-//! A strip of columns, line by line: its light, grey levels, NaN where it shows none of the lamp or the grey
-//! scale ends; and what the other lines say of its emission there.
-struct Strip {
-  std::vector<double> light, emission, variance;
-  double variancePerLine = 0; // grey levels^2, by which the emission changes from line to line
+//! Strips of columns: of each one its light, grey levels, on each line.
+struct Strips {
+  Eigen::ArrayXXd light; // strip, line; 0 where it is not seen
+  Eigen::ArrayXXd seen;  // 1; 0 where the strip shows none of the lamp or the grey scale ends
 };
 
-//! Mean and variance, grey levels, of a strip's emission.
+//! Of the strips' emission on each line, grey levels.
 struct Estimate {
-  double mean = 0, variance = 0;
+  Eigen::ArrayXXd mean, variance; // strip, line
 };
 
 /*!
   The shared modulation m and the strips' emissions S by turns: light = S m + noise, S a random walk along the
   lines (Rauch, Tung and Striebel 1965). Each line's m comes from what all other lines say of S there, so that
   it is no cause of itself; the walk's variance is that at which the innovations are as large as they should
-  be (Mehra 1970).
+  be (Mehra 1970). All strips are worked on side by side.
 */
 class SharedModulation
 {
 public:
-  SharedModulation(std::vector<Strip> strips, double noise);
+  SharedModulation(Strips strips, double noise);
   void iterate();
   size_t lines() const { return m_modulation.size(); }
   double modulation(size_t line) const { return m_modulation[line]; }
@@ -57,97 +58,93 @@ public:
 
 private:
   void start();
-  void smooth(Strip &strip) const;
-  double filter(const Strip &strip, bool backwards, std::vector<Estimate> &before) const;
+  void smooth();
+  Eigen::ArrayXd filter(bool backwards, Estimate &before) const;
   void shareTrend();
   void share();
 
-  std::vector<Strip> m_strips;
+  Strips m_strips;
+  Estimate m_emission, m_before, m_after; // by all lines, by those before and by those after each one
+  Eigen::ArrayXd m_walk; // grey levels^2, by which a strip's emission changes from line to line
   std::vector<double> m_modulation, m_sigma;
   double m_noise; // grey levels^2, of a strip's light
   double m_brightest = 0;
 };
 
-SharedModulation::SharedModulation(std::vector<Strip> strips, double noise)
+SharedModulation::SharedModulation(Strips strips, double noise)
     : m_strips(std::move(strips)), m_noise(noise * noise)
 {
   static const double soon = 0.1; // share of the brightest light, by which a strip may change in a line
-  const size_t lines = m_strips.empty() ? 0 : m_strips.front().light.size();
-  m_modulation.assign(lines, 1);
-  m_sigma.assign(lines, std::numeric_limits<double>::infinity());
-  for (Strip &strip : m_strips) {
-    double most = 0;
-    for (double light : strip.light) {
-      most = std::fmax(most, light);
-    }
-    m_brightest = std::max(m_brightest, most);
-    strip.variancePerLine = (soon * most) * (soon * most) + 1e-6;
-    strip.emission.resize(lines);
-    strip.variance.resize(lines);
+  const Eigen::Index count = m_strips.light.rows(), lines = m_strips.light.cols();
+  if (count == 0) {
+    return;
   }
+  m_modulation.assign(static_cast<size_t>(lines), 1);
+  m_sigma.assign(static_cast<size_t>(lines), std::numeric_limits<double>::infinity());
+  for (Estimate *each : {&m_emission, &m_before, &m_after}) {
+    each->mean.setZero(count, lines);
+    each->variance.setZero(count, lines);
+  }
+  const Eigen::ArrayXd most = m_strips.light.rowwise().maxCoeff().max(0);
+  m_brightest = most.maxCoeff();
+  m_walk = (soon * most).square() + 1e-6;
   start();
 }
 
 //! To begin with, each line's light over the most that its strips have near it.
 void SharedModulation::start()
 {
-  static const size_t periods = 4;   // that a lamp shows, or more
+  static const int periods = 4;      // that a lamp shows, or more
   static const double dimmest = 0.1; // share of the brightest strip
-  const size_t n = lines(), reach = std::max<size_t>(2, n / (2 * periods));
-  for (size_t i = 0; i < n; ++i) {
-    std::vector<double> shares;
-    for (const Strip &strip : m_strips) {
-      double most = 0;
-      for (size_t k = i - std::min(i, reach); k < std::min(n, i + reach + 1); ++k) {
-        most = std::fmax(most, strip.light[k]);
-      }
-      if (!std::isnan(strip.light[i]) && most > dimmest * m_brightest) {
-        shares.push_back(strip.light[i] / most);
+  const auto n = static_cast<int>(m_strips.light.cols()), count = static_cast<int>(m_strips.light.rows());
+  const int reach = std::max(2, n / (2 * periods));
+  const cv::Mat_<double> light(n, count, m_strips.light.data());
+  cv::Mat_<double> most;
+  cv::dilate(light, most, cv::Mat::ones(2 * reach + 1, 1, CV_8U));
+  std::vector<double> shares;
+  for (int i = 0; i < n; ++i) {
+    shares.clear();
+    for (int strip = 0; strip < count; ++strip) {
+      if (m_strips.seen(strip, i) > 0 && most(i, strip) > dimmest * m_brightest) {
+        shares.push_back(light(i, strip) / most(i, strip));
       }
     }
-    m_modulation[i] = shares.empty() ? 0.5 : std::clamp(medianOf(shares), 0.0, 1.0);
+    m_modulation[static_cast<size_t>(i)] = shares.empty() ? 0.5 : std::clamp(medianOf(shares), 0.0, 1.0);
   }
 }
 
-//! What the lines before each one say of the strip's emission there. \return Mean square of the innovations
-//! over their variance.
-double SharedModulation::filter(const Strip &strip, bool backwards, std::vector<Estimate> &before) const
+//! What the lines before each one say of the emission there. \return Of each strip, mean square of the
+//! innovations over their variance.
+Eigen::ArrayXd SharedModulation::filter(bool backwards, Estimate &before) const
 {
-  const size_t n = lines();
-  before.resize(n);
-  Estimate now{0, m_brightest * m_brightest};
-  double sum = 0;
-  int count = 0;
-  for (size_t k = 0; k < n; ++k) {
-    const size_t i = backwards ? n - 1 - k : k;
-    before[i] = now;
-    const double m = m_modulation[i], light = strip.light[i];
-    if (!std::isnan(light)) {
-      const double innovation = light - m * now.mean, variance = m * m * now.variance + m_noise,
-                   gain = m * now.variance / variance;
-      now.mean += gain * innovation;
-      now.variance *= 1 - gain * m;
-      sum += innovation * innovation / variance;
-      ++count;
-    }
-    now.variance += strip.variancePerLine;
+  const Eigen::Index n = m_strips.light.cols(), count = m_strips.light.rows();
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(count),
+                 variance = Eigen::ArrayXd::Constant(count, m_brightest * m_brightest), sum = mean,
+                 innovation(count), precision(count);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::Index i = backwards ? n - 1 - k : k;
+    before.mean.col(i) = mean;
+    before.variance.col(i) = variance;
+    const double m = m_modulation[static_cast<size_t>(i)];
+    innovation = m_strips.light.col(i) - m * mean;
+    precision = m_strips.seen.col(i) / (m * m * variance + m_noise);
+    sum += innovation.square() * precision;
+    mean += m * variance * precision * innovation;
+    variance += m_walk - (m * variance).square() * precision;
   }
-  return count > 0 ? sum / count : 1;
+  const Eigen::ArrayXd seen = m_strips.seen.rowwise().sum();
+  return (seen > 0).select(sum / seen.max(1), 1);
 }
 
-void SharedModulation::smooth(Strip &strip) const
+void SharedModulation::smooth()
 {
-  std::vector<Estimate> before, after;
   static const double step = 4;
-  const double chiSquare = filter(strip, false, before);
-  strip.variancePerLine *= std::clamp(chiSquare, 1 / step, step);
-  filter(strip, false, before);
-  filter(strip, true, after);
-  for (size_t i = 0; i < before.size(); ++i) {
-    const double first = 1 / before[i].variance, second = 1 / after[i].variance;
-    strip.variance[i] = 1 / (first + second);
-    strip.emission[i] = std::max(0.0, strip.variance[i] * (first * before[i].mean + second * after[i].mean));
-  }
+  m_walk *= filter(false, m_before).max(1 / step).min(step);
+  filter(false, m_before);
+  filter(true, m_after);
+  m_emission.variance = m_before.variance * m_after.variance / (m_before.variance + m_after.variance);
+  m_emission.mean =
+      (m_emission.variance * (m_before.mean / m_before.variance + m_after.mean / m_after.variance)).max(0);
 }
 
 //! Each line's modulation: strips where the emission jumps are outliers, Student's t of few degrees of
@@ -156,22 +153,18 @@ void SharedModulation::share()
 {
   static const double freedom = 2;
   std::vector<double> known;
+  Eigen::ArrayXd weight(m_strips.light.rows());
   for (size_t i = 0; i < lines(); ++i) {
+    const auto line = static_cast<Eigen::Index>(i);
+    const auto light = m_strips.light.col(line), emission = m_emission.mean.col(line);
     double square = 0;
     for (int step = 0; step < 4; ++step) {
-      double product = 0;
-      square = 0;
-      for (const Strip &strip : m_strips) {
-        const double light = strip.light[i], emission = strip.emission[i];
-        if (!std::isnan(light)) {
-          const double m = m_modulation[i], variance = m_noise + m * m * strip.variance[i],
-                       left = light - m * emission,
-                       weight = (freedom + 1) / (freedom + left * left / variance) / variance;
-          product += weight * emission * light;
-          square += weight * emission * emission;
-        }
-      }
-      m_modulation[i] = square > 0 ? std::max(0.0, product / square) : 0;
+      const double m = m_modulation[i];
+      weight =
+          (freedom + 1) * m_strips.seen.col(line) * emission /
+          (freedom * (m_noise + m * m * m_emission.variance.col(line)) + (light - m * emission).square());
+      square = (weight * emission).sum();
+      m_modulation[i] = square > 0 ? std::max(0.0, (weight * light).sum() / square) : 0;
     }
     m_sigma[i] = 1 / std::sqrt(square);
     if (square > 1) {
@@ -196,35 +189,33 @@ void SharedModulation::share()
 void SharedModulation::shareTrend()
 {
   static const double dimmest = 0.02, lit = 0.3; // shares of the brightest light, of a lit line's
+  const Eigen::ArrayXXd &emission = m_emission.mean, &seen = m_strips.seen;
   double gain = 1;
   std::vector<double> gains(lines(), 1), ratios;
   for (size_t i = 1; i < lines(); ++i) {
     ratios.clear();
+    const auto line = static_cast<Eigen::Index>(i);
     const bool told = m_modulation[i] > lit && m_modulation[i - 1] > lit; // in the dark nothing is
-    for (const Strip &strip : m_strips) {
-      if (told && strip.emission[i - 1] > dimmest * m_brightest &&
-          strip.emission[i] > dimmest * m_brightest && !std::isnan(strip.light[i]) &&
-          !std::isnan(strip.light[i - 1])) {
-        ratios.push_back(strip.emission[i] / strip.emission[i - 1]);
+    for (Eigen::Index strip = 0; told && strip < emission.rows(); ++strip) {
+      if (emission(strip, line - 1) > dimmest * m_brightest &&
+          emission(strip, line) > dimmest * m_brightest && seen(strip, line) * seen(strip, line - 1) > 0) {
+        ratios.push_back(emission(strip, line) / emission(strip, line - 1));
       }
     }
     gain *= ratios.empty() ? 1 : medianOf(ratios);
     gains[i] = gain;
   }
   for (size_t i = 0; i < lines(); ++i) {
+    const auto line = static_cast<Eigen::Index>(i);
     m_modulation[i] *= gains[i];
-    for (Strip &strip : m_strips) {
-      strip.emission[i] /= gains[i];
-      strip.variance[i] /= gains[i] * gains[i];
-    }
+    m_emission.mean.col(line) /= gains[i];
+    m_emission.variance.col(line) /= gains[i] * gains[i];
   }
 }
 
 void SharedModulation::iterate()
 {
-  for (Strip &strip : m_strips) {
-    smooth(strip);
-  }
+  smooth();
   shareTrend();
   share();
 }
@@ -256,38 +247,31 @@ double noiseOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
   Means of the lines of a region, strip by strip, above its darkest twentieth; of those inside the lamp, where
   its outline is known.
 */
-std::vector<Strip> stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box,
-                            const vpLampOutline &outline, int width)
+Strips stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const vpLampOutline &outline,
+                int width)
 {
   static const unsigned char nearlyWhite = 250;
   static const size_t few = 20;
-  std::vector<Strip> strips(static_cast<size_t>(box.width / width));
-  std::vector<double> all;
-  for (int line = box.y; line < box.br().y; ++line) {
+  Strips strips{Eigen::ArrayXXd(box.width / width, box.height),
+                Eigen::ArrayXXd(box.width / width, box.height)};
+  for (int i = 0; i < box.height; ++i) {
+    const int line = box.y + i;
     double from = box.x, to = box.br().x;
     if (outline.shape != vpLampOutline::Shape::region && !outline.stretch(line, from, to)) {
       from = to = box.x;
     }
-    int first = box.x;
-    for (Strip &strip : strips) {
+    for (int k = 0, first = box.x; k < strips.light.rows(); ++k, first += width) {
       const unsigned char *row = lines[line] + first;
-      const double mean = static_cast<double>(vpBrighter::sum(row, width)) / width;
-      all.push_back(mean);
-      const bool shows =
-          first > from && first + width - 1 < to && vpBrighter::brightest(row, width) < nearlyWhite;
-      strip.light.push_back(shows ? mean : std::nan(""));
-      first += width;
+      strips.light(k, i) = static_cast<double>(vpBrighter::sum(row, width)) / width;
+      strips.seen(k, i) =
+          first > from && first + width - 1 < to && vpBrighter::brightest(row, width) < nearlyWhite ? 1 : 0;
     }
   }
-  if (all.empty()) {
-    return {};
-  }
-  const auto darkest = all.begin() + static_cast<long>(all.size() / few);
-  std::nth_element(all.begin(), darkest, all.end());
-  for (Strip &strip : strips) {
-    for (double &light : strip.light) {
-      light -= *darkest;
-    }
+  if (strips.light.size() > 0) {
+    std::vector<double> all(strips.light.data(), strips.light.data() + strips.light.size());
+    const auto darkest = all.begin() + static_cast<long>(all.size() / few);
+    std::nth_element(all.begin(), darkest, all.end());
+    strips.light = (strips.light - *darkest) * strips.seen;
   }
   return strips;
 }
@@ -295,16 +279,16 @@ std::vector<Strip> stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect
 
 vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &lines,
                                                  const vpLineTiming &timing, const vpOutlineFit &fit,
-                                                 const vpLedRoi &roi)
+                                                 const vpLedRoi &roi, int strips)
 {
-  static const int mostStrips = 32, narrowest = 2; // samples
+  static const int narrowest = 2; // samples
   static const int rounds = 6;
   static const double lit = 100, least = 0.5; // grey levels, of a lit line; of its standard deviation
   static const double unknown = 0.3;          // standard deviation of a line that tells nothing
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();
-  const int width = std::max(narrowest, roi.box.width / mostStrips);
+  const int width = std::max(narrowest, roi.box.width / strips);
   SharedModulation shared(stripsOf(lines, roi.box, fit.outline, width),
                           noiseOf(lines, roi.box) / std::sqrt(width));
   for (int round = 0; round < rounds; ++round) {

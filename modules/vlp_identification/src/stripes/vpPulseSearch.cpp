@@ -46,13 +46,16 @@ bool asStated(const vpWaveformFit &fit, const vpStripeProfile &profile)
 
 vpPulseSearch::vpPulseSearch(const vpStripeProfile &profile, std::vector<double> envelope, int order,
                              const vpStripeAnalyzer &analyzer)
-    : m_profile(&profile), m_envelope(std::move(envelope))
+    : m_profile(&profile), m_envelope(std::move(envelope)), m_slowest(analyzer.minFrequency)
 {
   settings.modelError = analyzer.modelError;
   settings.exposureTolerance = analyzer.exposureTolerance;
   settings.envelopeOrder = order;
   m_edges = vpStripeStarts::edges(profile, m_envelope);
   m_pulses = vpStripeStarts::pulses(m_edges);
+  if (m_pulses && m_pulses->frequency < m_slowest) {
+    m_pulses.reset();
+  }
 }
 
 vpPulseSearch vpPulseSearch::evenly(bool explained, const vpStripeAnalyzer &analyzer) const
@@ -80,7 +83,7 @@ const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
 {
   static const size_t most = 3;
   if (!m_candidates) {
-    m_candidates = vpStripeStarts::periodogram(*m_profile, m_envelope, settings.modelError);
+    m_candidates = vpStripeStarts::periodogram(*m_profile, m_envelope, settings.modelError, m_slowest);
     m_candidates->resize(std::min(m_candidates->size(), most));
   }
   return *m_candidates;

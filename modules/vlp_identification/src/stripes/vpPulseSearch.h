@@ -48,6 +48,7 @@ public:
 private:
   const vpStripeProfile *m_profile;
   std::vector<double> m_envelope;
+  double m_slowest; // Hz
   std::vector<vpStripeStarts::Edge> m_edges;
   std::optional<vpStripeStarts::Pulses> m_pulses;
   bool m_byPulses = false; // what the edges say is all there is to try

@@ -37,6 +37,31 @@ int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &p
   return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
 }
 
+//! What a profile shows before anything is fitted to it.
+struct Stripes {
+  std::vector<size_t> peaks;
+  int order; // bends of the envelope
+  vpPulseSearch search;
+  double depth;
+
+  Stripes(const vpStripeProfile &profile, const vpStripeAnalyzer &analyzer)
+      : peaks(vpStripeStarts::peaks(profile)), order(envelopeOrderOf(profile, peaks)),
+        search(profile,
+               vpStripeStarts::envelope(profile, vpStripeStarts::wholePeaks(profile, peaks), order), order,
+               analyzer),
+        depth(profile.depth())
+  {
+  }
+
+  bool blink(const vpStripeProfile &profile, const vpStripeAnalyzer &analyzer)
+  {
+    return depth >= analyzer.minModulation && profile.agreement >= analyzer.minAgreement &&
+           search.significant(analyzer.minSignificance);
+  }
+};
+
+const size_t fewestLines = 6;
+
 //! Whether a camera that sharpens would show: on stripes wide enough, and on more lines than such a wave
 //! could follow by chance.
 bool showsSharpening(const vpStripeProfile &profile, double frequency)
@@ -181,22 +206,24 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
 
 } // namespace
 
+bool vpStripeAnalyzer::blinks(const vpStripeProfile &profile) const
+{
+  return profile.light.size() >= fewestLines && Stripes(profile, *this).blink(profile, *this);
+}
+
 vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
 {
   vpStripeFeatures features;
-  static const size_t fewestLines = 6;
   if (profile.light.size() < fewestLines) {
     return features;
   }
-  const std::vector<size_t> peaks = vpStripeStarts::peaks(profile);
+  Stripes stripes(profile, *this);
+  const std::vector<size_t> &peaks = stripes.peaks;
+  const int order = stripes.order;
+  vpPulseSearch &byAll = stripes.search;
   features.stripes = static_cast<unsigned int>(peaks.size());
-  features.modulation = profile.depth();
-
-  const int order = envelopeOrderOf(profile, peaks);
-  const std::vector<size_t> whole = vpStripeStarts::wholePeaks(profile, peaks);
-  vpPulseSearch byAll(profile, vpStripeStarts::envelope(profile, whole, order), order, *this);
-  if (features.modulation < minModulation || profile.agreement < minAgreement ||
-      !byAll.significant(minSignificance)) {
+  features.modulation = stripes.depth;
+  if (!stripes.blink(profile, *this)) {
     return features;
   }
   features.misfit = 1; // where no pulses explain anything

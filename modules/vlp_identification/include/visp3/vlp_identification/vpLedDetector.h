@@ -72,8 +72,8 @@ public:
   //! \throw vpException (dimensionError) where \e I has not the size that the rig states.
   void check(const vpImage<unsigned char> &I) const;
 
-  //! Every lamp-like region of the last picture, the one with the largest lit area first. Of a steady
-  //! one (vpLedRoi) the outline is its box.
+  //! Every lamp-like region of the last picture, the one with the largest lit area first. Of one
+  //! without stripes the outline is its box.
   const std::vector<vpLampObservation> &observations() const { return m_observations; }
 
   //! Error of the rig's row time, by the lamps of the last picture.
@@ -96,6 +96,9 @@ private:
   bool observe(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois);
   Region observe(const vpLinePicture &picture, const vpLedRoi &roi);
   void read(const vpLinePicture &picture, Region &region) const;
+  vpStripeAnalyzer analyzer() const;
+  bool mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const;
+  bool isPatchwork(const vpStripeProfile &agreed) const;
   vpStripeFeatures analyzed(vpStripeProfile profile, bool unknownWords) const;
   vpStripeFeatures stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
                              const vpLedRoi &roi) const;

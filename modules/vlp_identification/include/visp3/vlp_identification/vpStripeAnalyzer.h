@@ -46,11 +46,11 @@ struct VISP_EXPORT vpStripeProfile {
     both by turns: S of each strip as a random walk along the lines, m of each line from the S that all
     other lines predict there. Patches, glare and clipped columns are outliers of a few strips. Where all
     strips change alike while the lamp is lit, S and m cannot be separated, and all is taken for m. Less
-    certain than along() where the emitter is even. \return As if a lit line had 100 grey levels; lines
-    without information are left out.
+    certain than along() where the emitter is even. \param strips The most to take: time grows with their
+    number. \return As if a lit line had 100 grey levels; lines without information are left out.
   */
   static vpStripeProfile agreedByColumns(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
-                                         const vpOutlineFit &fit, const vpLedRoi &roi);
+                                         const vpOutlineFit &fit, const vpLedRoi &roi, int strips = 32);
 };
 
 //! How the words of a map's lamps are sent: what is known of a word before its chips are.
@@ -94,10 +94,14 @@ public:
   double minModulation = 0.05;    // depth of stripes below which a lamp counts as unmodulated
   bool searchUnknownWords = true; // of formats that are not in `words`: a search of tenths of a second
   bool searchTwoPulses = true;    // off where no lamp of the map is one: a search of tens of milliseconds
+  double minFrequency = 0;        // Hz: light that changes slower is no lamp's
   double minSignificance = 30;    // gain in chi-square by which a sinusoid has to beat a plain lamp
 
   double minWordConfidence = 0.99; // probability that all chips of a word are right below which none is given
   std::vector<vpWordFormat> words; // that the map's lamps send; other formats need more repetitions
+
+  //! Whether there are stripes at all, before anything is fitted to them.
+  bool blinks(const vpStripeProfile &profile) const;
 
   //! Signal, frequency, duty, phase difference, chips, stripes, modulation, misfit; area is left to the
   //! caller.
