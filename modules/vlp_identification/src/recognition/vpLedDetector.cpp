@@ -268,15 +268,18 @@ vpStripeFeatures vpLedDetector::analyzed(vpStripeProfile profile, bool unknownWo
   return by.analyze(profile);
 }
 
-//! Whether a region has stripes at all, by its middle or by what its columns agree on.
+//! Whether a region has stripes at all, by its middle, or at first sight by what its columns agree on.
 bool vpLedDetector::mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const
 {
   if (roi.steady) {
     return false;
   }
-  const vpOutlineFit box = vpOutlineFitter::boxOf(roi);
-  return analyzer().blinks(vpStripeProfile::along(picture.grey, m_timing, box, roi)) ||
-         isPatchwork(vpStripeProfile::agreedByColumns(picture.grey, m_timing, box, roi));
+  static const int soft = 2; // lines at either end, by blur and by exposure
+  vpLedRoi inner = roi;
+  inner.box = cv::Rect(roi.box.x, roi.box.y + soft, roi.box.width, std::max(0, roi.box.height - 2 * soft));
+  const vpOutlineFit box = vpOutlineFitter::boxOf(inner);
+  return analyzer().blinks(vpStripeProfile::along(picture.grey, m_timing, box, inner)) ||
+         isPatchwork(vpStripeProfile::agreedByColumns(picture.grey, m_timing, box, inner, 0));
 }
 
 //! Whether what columns agree on are a lamp's stripes.

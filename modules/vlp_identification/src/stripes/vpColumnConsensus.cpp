@@ -109,7 +109,9 @@ void SharedModulation::start()
         shares.push_back(light(i, strip) / most(i, strip));
       }
     }
-    m_modulation[static_cast<size_t>(i)] = shares.empty() ? 0.5 : std::clamp(medianOf(shares), 0.0, 1.0);
+    const auto line = static_cast<size_t>(i);
+    m_modulation[line] = shares.empty() ? 0.5 : std::clamp(medianOf(shares), 0.0, 1.0);
+    m_sigma[line] = std::sqrt(m_noise / static_cast<double>(shares.size())) / m_brightest;
   }
 }
 
@@ -279,16 +281,15 @@ Strips stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const
 
 vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &lines,
                                                  const vpLineTiming &timing, const vpOutlineFit &fit,
-                                                 const vpLedRoi &roi, int strips)
+                                                 const vpLedRoi &roi, int rounds)
 {
-  static const int narrowest = 2; // samples
-  static const int rounds = 6;
+  static const int mostStrips = 32, narrowest = 2; // samples
   static const double lit = 100, least = 0.5; // grey levels, of a lit line; of its standard deviation
   static const double unknown = 0.3;          // standard deviation of a line that tells nothing
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();
-  const int width = std::max(narrowest, roi.box.width / strips);
+  const int width = std::max(narrowest, roi.box.width / mostStrips);
   SharedModulation shared(stripsOf(lines, roi.box, fit.outline, width),
                           noiseOf(lines, roi.box) / std::sqrt(width));
   for (int round = 0; round < rounds; ++round) {

@@ -55,8 +55,7 @@ struct Stripes {
 
   bool blink(const vpStripeProfile &profile, const vpStripeAnalyzer &analyzer)
   {
-    return depth >= analyzer.minModulation && profile.agreement >= analyzer.minAgreement &&
-           search.significant(analyzer.minSignificance);
+    return depth >= analyzer.minModulation && search.significant(analyzer.minSignificance);
   }
 };
 
@@ -223,7 +222,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   vpPulseSearch &byAll = stripes.search;
   features.stripes = static_cast<unsigned int>(peaks.size());
   features.modulation = stripes.depth;
-  if (!stripes.blink(profile, *this)) {
+  if (profile.agreement < minAgreement || !stripes.blink(profile, *this)) {
     return features;
   }
   features.misfit = 1; // where no pulses explain anything
