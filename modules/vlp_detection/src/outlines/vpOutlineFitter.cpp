@@ -224,6 +224,12 @@ bool isAligned(const std::vector<double> &positions)
 }
 } // namespace
 
+bool vpOutlineFitter::looksWhole(const vpLedRoi &roi)
+{
+  static const double nearly = 0.93; // of what a perfect shape has
+  return roi.lampness > nearly * vpChordShape::mostLampness(2 * roi.box.height);
+}
+
 vpOutlineFit vpOutlineFitter::boxOf(const vpLedRoi &roi)
 {
   vpOutlineFit fit;
@@ -262,8 +268,8 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   vpEdgeFit<vpEllipseModel> ellipse(picture, start, memory);
   // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
   static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
-  const bool whole = roi.lampness > nearlyPerfect * vpChordShape::mostLampness(2 * roi.box.height);
-  bool isEllipse = whole && ellipse.run(roi.box, shapeSigma, {maxIterations, 2, 0.005, true}, likelyBlur) &&
+  bool isEllipse = looksWhole(roi) &&
+                   ellipse.run(roi.box, shapeSigma, {maxIterations, 2, 0.005, true}, likelyBlur) &&
                    ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
   if (!isEllipse) {
     ellipse = vpEdgeFit<vpEllipseModel>(picture, start, memory);

@@ -271,9 +271,6 @@ vpStripeFeatures vpLedDetector::analyzed(vpStripeProfile profile, bool unknownWo
 //! Whether a region has stripes at all, by its middle, or at first sight by what its columns agree on.
 bool vpLedDetector::mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const
 {
-  if (roi.steady) {
-    return false;
-  }
   static const int soft = 2; // lines at either end, by blur and by exposure
   vpLedRoi inner = roi;
   inner.box = cv::Rect(roi.box.x, roi.box.y + soft, roi.box.width, std::max(0, roi.box.height - 2 * soft));
@@ -361,7 +358,8 @@ vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const
 {
   Region region;
   region.roi = roi;
-  const bool blinks = mayBlink(picture, roi); // else its outline is no matter
+  // Of what does not blink the outline is no matter.
+  const bool blinks = !roi.steady && (vpOutlineFitter::looksWhole(roi) || mayBlink(picture, roi));
   region.fit = blinks ? outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(),
                                           roi, m_blur)
                       : vpOutlineFitter::boxOf(roi);

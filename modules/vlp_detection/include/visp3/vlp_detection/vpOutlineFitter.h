@@ -56,6 +56,9 @@ public:
                    const std::vector<double> &samplePositions, const vpLedRoi &roi,
                    double likelyBlur = 0) const;
 
+  //! Whether a region has the shape of a whole lamp with nothing beside it: such an outline is soon found.
+  static bool looksWhole(const vpLedRoi &roi);
+
   //! That of the lit pixels, a region, as uncertain as it is large.
   static vpOutlineFit boxOf(const vpLedRoi &roi);
 };
