@@ -253,6 +253,33 @@ TEST(StripeAnalyzer, SteadyLightHasNoStripes)
   }
 }
 
+TEST(StripeAnalyzer, LightThatChangesSlowerThanAnyLampDoesNotBlink)
+{
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  // 200 lines of 40 us: light that swells at 200 Hz, by a depth, times a lamp's pulses.
+  auto seen = [&](double depth, bool lamp) {
+    vpStripeProfile profile;
+    profile.exposure = 40e-6;
+    for (int i = 0; i < 200; ++i) {
+      const double t = 40e-6 * i, pulses = std::fmod(1500 * t, 1) < 0.5 ? 1 : 0;
+      profile.time.push_back(t);
+      profile.light.push_back(100 * (1 + depth * std::sin(2 * M_PI * 200 * t)) * (lamp ? pulses : 1) +
+                              noise(random));
+      profile.sigma.push_back(1);
+    }
+    return profile;
+  };
+  vpStripeAnalyzer any, notSlower;
+  notSlower.minFrequency = 500;
+  const vpStripeProfile swell = seen(0.8, false), lamp = seen(0.3, true);
+  EXPECT_TRUE(any.blinks(swell));
+  EXPECT_FALSE(notSlower.blinks(swell));
+  EXPECT_EQ(notSlower.analyze(swell).signal, Signal::unmodulated);
+  EXPECT_TRUE(notSlower.blinks(lamp));
+  EXPECT_NEAR(notSlower.analyze(lamp).frequency, 1500, 5);
+}
+
 TEST(StripeAnalyzer, EmptyAndShortProfilesSayNothing)
 {
   vpStripeProfile profile;

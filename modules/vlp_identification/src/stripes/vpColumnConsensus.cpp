@@ -76,7 +76,7 @@ SharedModulation::SharedModulation(Strips strips, double noise)
 {
   static const double soon = 0.1; // share of the brightest light, by which a strip may change in a line
   const Eigen::Index count = m_strips.light.rows(), lines = m_strips.light.cols();
-  if (count == 0) {
+  if (m_strips.light.size() == 0) {
     return;
   }
   m_modulation.assign(static_cast<size_t>(lines), 1);
@@ -217,6 +217,9 @@ void SharedModulation::shareTrend()
 
 void SharedModulation::iterate()
 {
+  if (m_modulation.empty()) {
+    return;
+  }
   smooth();
   shareTrend();
   share();
@@ -284,8 +287,8 @@ vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &
                                                  const vpLedRoi &roi, int rounds)
 {
   static const int mostStrips = 32, narrowest = 2; // samples
-  static const double lit = 100, least = 0.5; // grey levels, of a lit line; of its standard deviation
-  static const double unknown = 0.3;          // standard deviation of a line that tells nothing
+  static const double lit = 100, least = 0.5;      // grey levels, of a lit line; of its standard deviation
+  static const double unknown = 0.3;               // standard deviation of a line that tells nothing
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();

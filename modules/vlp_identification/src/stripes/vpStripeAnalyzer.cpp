@@ -46,9 +46,8 @@ struct Stripes {
 
   Stripes(const vpStripeProfile &profile, const vpStripeAnalyzer &analyzer)
       : peaks(vpStripeStarts::peaks(profile)), order(envelopeOrderOf(profile, peaks)),
-        search(profile,
-               vpStripeStarts::envelope(profile, vpStripeStarts::wholePeaks(profile, peaks), order), order,
-               analyzer),
+        search(profile, vpStripeStarts::envelope(profile, vpStripeStarts::wholePeaks(profile, peaks), order),
+               order, analyzer),
         depth(profile.depth())
   {
   }
