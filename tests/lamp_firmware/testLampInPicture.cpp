@@ -86,7 +86,7 @@ void light(vpSimulatedArduino &board, vpPaintedLamp &painted)
   board.run(1e-3);
   board.edges.clear();
   board.say("show\n"); // interrupts of the serial port come between
-  board.run(0.05); // in which it answers
+  board.run(0.05);     // in which it answers
   const size_t first = board.edges.front().lit ? 0 : 1,
                last = (board.edges.size() - first - 1) / 2 * 2 + first;
   const auto begin = static_cast<double>(board.edges[first].cycle);
