@@ -309,7 +309,7 @@ void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<Region>
       }
     }
     if (pieces.size() > 1 && vpPatchwork::isLamp(stripesOf(picture, vpOutlineFitter::boxOf(whole), whole))) {
-      Region together = observe(picture, whole);
+      Region together = observe(picture, whole, true);
       if (vpPatchwork::isLamp(together.lamp.features)) {
         regions[i] = together;
         for (size_t n = 1; n < pieces.size(); ++n) {

@@ -354,12 +354,16 @@ void vpLedDetector::shareExposure(const vpLinePicture &picture, std::vector<Regi
   }
 }
 
+//! A region as the picture shows it; of what does not blink the outline is no matter.
 vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
+{
+  return observe(picture, roi, !roi.steady && (vpOutlineFitter::looksWhole(roi) || mayBlink(picture, roi)));
+}
+
+vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi, bool blinks)
 {
   Region region;
   region.roi = roi;
-  // Of what does not blink the outline is no matter.
-  const bool blinks = !roi.steady && (vpOutlineFitter::looksWhole(roi) || mayBlink(picture, roi));
   region.fit = blinks ? outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(),
                                           roi, m_blur)
                       : vpOutlineFitter::boxOf(roi);

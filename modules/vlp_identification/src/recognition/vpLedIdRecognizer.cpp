@@ -61,24 +61,6 @@ double unknownDensity(const vpStripeFeatures &seen)
   return density;
 }
 
-//! Why the features name no lamp, whatever the map; empty where they may.
-std::string unreadable(const vpStripeFeatures &seen, double maxFrequencySigma, double maxSpread)
-{
-  if (seen.signal == Signal::unmodulated) {
-    return "no stripes";
-  }
-  if (seen.signal == Signal::coded && seen.chips.empty()) {
-    return "neither PWM nor a word that was seen whole";
-  }
-  if (!(seen.frequencySigma < maxFrequencySigma * seen.frequency)) {
-    return "too few stripes for a frequency";
-  }
-  if (seen.alongDuty.empty() && seen.frequencySigma > maxSpread * seen.frequencyBound) {
-    return "its edges hide between the lines";
-  }
-  return "";
-}
-
 /*!
   A lamp hangs in one place. What blinks as it does elsewhere, with a small part of its light, is its
   reflection in a pane or on a shiny thing, or a piece of it: it keeps its candidates and has no id.
@@ -201,6 +183,35 @@ bool vpLedIdRecognizer::mayLookLike(const vpIdentifier &identifier, const vpLamp
   });
 }
 
+//! Why the features name no lamp of the map, whichever it is; empty where they may.
+std::string vpLedIdRecognizer::unreadable(const vpStripeFeatures &seen) const
+{
+  if (seen.signal == Signal::unmodulated) {
+    return "no stripes";
+  }
+  if (seen.signal == Signal::coded && seen.chips.empty()) {
+    return "neither PWM nor a word that was seen whole";
+  }
+  if (!(seen.frequencySigma < maxFrequencySigma * seen.frequency)) {
+    return "too few stripes for a frequency";
+  }
+  if (seen.alongDuty.empty() && seen.frequencySigma > maxSpread * boundOf(seen)) {
+    return "its edges hide between the lines";
+  }
+  return "";
+}
+
+//! Hz, the bound of an estimate's error, or as much more as lets hardly any unknown lamp pass.
+double vpLedIdRecognizer::boundOf(const vpStripeFeatures &seen) const
+{
+  if (std::isnan(seen.frequencyBound)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double identifiers = static_cast<double>(m_identifiers.size()),
+               chance = 2 * boundGate * identifiers * unknownDensity(seen); // per Hz
+  return std::max(seen.frequencyBound, maxChance / chance);
+}
+
 //! Compares duty, phase difference or word of an identifier with what was seen.
 void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp, size_t index) const
 {
@@ -231,14 +242,13 @@ void vpLedIdRecognizer::addCandidate(Sight &sight, const vpLampObservation &lamp
     reading.distance = merged->distance({reading.duty, reading.duty}) / sigma;
   }
   candidate.seen = reading.frequency;
-  candidate.reach =
-      std::hypot(reachOf(reading.frequencySigma, seen.frequencyBound), spreadGate * reading.spread);
+  const double bound = boundOf(seen), reach = std::min(gate * reading.frequencySigma, boundGate * bound);
+  candidate.reach = std::hypot(reach, spreadGate * reading.spread);
   candidate.sigma = std::hypot(reading.frequencySigma, candidate.clock);
   candidate.weight = (1 - unknownPrior) * static_cast<double>(identifier.lamps.size()) /
                      static_cast<double>(m_map.lamps.size());
   candidate.weight *= reading.density;
-  candidate.fits =
-      reading.distance < shapeGate && !(reading.frequencySigma > maxSpread * seen.frequencyBound);
+  candidate.fits = reading.distance < shapeGate && !(reading.frequencySigma > maxSpread * bound);
   if (seen.signal == Signal::twoPulse) {
     const double sigma = std::hypot(seen.phaseDifferenceSigma, phaseError),
                  z = (seen.phaseDifference - sent.phaseDifference) / sigma;
@@ -258,7 +268,7 @@ vpLedIdRecognizer::Sight vpLedIdRecognizer::sightOf(const vpLampObservation &lam
 {
   const vpStripeFeatures &seen = lamp.features;
   Sight sight;
-  if (!unreadable(seen, maxFrequencySigma, maxSpread).empty()) {
+  if (!unreadable(seen).empty()) {
     return sight;
   }
   sight.readable = true;
@@ -278,13 +288,6 @@ vpLedIdRecognizer::Sight vpLedIdRecognizer::sightOf(const vpLampObservation &lam
     }
   }
   return sight;
-}
-
-//! Hz, that an estimate may be off.
-double vpLedIdRecognizer::reachOf(double frequencySigma, double frequencyBound) const
-{
-  const double reach = gate * frequencySigma;
-  return std::isfinite(frequencyBound) ? std::min(reach, boundGate * frequencyBound) : reach;
 }
 
 //! A grid of them, fine enough for the sharpest candidate.
@@ -369,7 +372,7 @@ void vpLedIdRecognizer::decide(vpLampObservation &lamp, const Sight &sight) cons
 {
   lamp.id.clear();
   lamp.candidates.clear();
-  lamp.remark = unreadable(lamp.features, maxFrequencySigma, maxSpread);
+  lamp.remark = unreadable(lamp.features);
   lamp.confidence = 1; // of being none of them
   if (!sight.readable) {
     return;

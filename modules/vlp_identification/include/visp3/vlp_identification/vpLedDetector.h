@@ -95,6 +95,7 @@ private:
   struct Region;
   bool observe(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois);
   Region observe(const vpLinePicture &picture, const vpLedRoi &roi);
+  Region observe(const vpLinePicture &picture, const vpLedRoi &roi, bool blinks);
   void read(const vpLinePicture &picture, Region &region) const;
   vpStripeAnalyzer analyzer() const;
   bool mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const;

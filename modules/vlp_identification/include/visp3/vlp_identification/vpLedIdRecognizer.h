@@ -5,6 +5,7 @@
 #ifndef vpLedIdRecognizer_h
 #define vpLedIdRecognizer_h
 
+#include <string>
 #include <vector>
 
 #include <visp3/vlp_core/vpLampMap.h>
@@ -35,8 +36,9 @@ struct VISP_EXPORT vpRowTimeError {
   An identifier that lies within `gate` standard deviations in frequency, and `shapeGate` in duty and phase
   difference, is a candidate. Near simple fractions of the rate of lines all edges may fall between exposures:
   the frequency is then less certain, and lamps that the map does not know may pass the gate. So the gate on
-  the estimate's error is limited to `boundGate` times the bound (vpStripeFeatures::frequencyBound). A
-  frequency whose sigma is more than `maxSpread` times that bound has no candidate.
+  the estimate's error is limited to `boundGate` times the bound (vpStripeFeatures::frequencyBound), or to
+  where an unknown lamp lies with probability `maxChance`, which in a map of few lamps is wider. A frequency
+  whose sigma is more than `maxSpread` times that bound has no candidate.
   Where duty and frequency are known together only (vpStripeFeatures::alongDuty), each identifier is compared
   with the frequency that belongs to its own duty, and one that states none within `spreadGate` of all of
   them. Two pulses with a gap shorter than the exposure may be seen as one, of any duty from about theirs to
@@ -63,6 +65,7 @@ public:
   double minConfidence = 0.99;     // probability below which no id is given
   double maxFrequencySigma = 0.03; // share of the frequency: less certain stripes are recognised as nothing
   double maxSpread = 4;            // frequencySigma over frequencyBound, above which there is no id
+  double maxChance = 0.005;        // probability of an unknown lamp within the bounds of any of the map's
   double dutyError = 0.03;         // systematic error of a measured duty, standard deviation
   double phaseError = 0.01;        // of a measured phase difference, periods
   double unknownPrior = 0.001;     // prior probability that a blinking region is none of the map's lamps
@@ -85,7 +88,8 @@ private:
   void addCandidate(Sight &sight, const vpLampObservation &lamp, size_t identifier) const;
   Sight sightOf(const vpLampObservation &lamp) const;
   bool mayLookLike(const vpIdentifier &identifier, const vpLampObservation &lamp) const;
-  double reachOf(double frequencySigma, double frequencyBound) const;
+  std::string unreadable(const vpStripeFeatures &seen) const;
+  double boundOf(const vpStripeFeatures &seen) const;
   std::vector<double> rowTimeErrors(const std::vector<Sight> &sights) const;
   void decide(vpLampObservation &lamp, const Sight &sight) const;
 
