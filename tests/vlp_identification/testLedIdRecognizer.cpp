@@ -145,10 +145,20 @@ TEST(LedIdRecognizer, UncertainFrequencyIsNoId)
   EXPECT_TRUE(recognized(map, stripes(2000, 400)).id.empty());
 }
 
+//! Lamp A of 2000 Hz in a map that has two hundred others.
+vpLampMap crowdedMap()
+{
+  vpLampMap map{{lamp("A", 2000)}};
+  for (int i = 0; i < 200; ++i) {
+    map.lamps.push_back(lamp("B" + std::to_string(i), 2500 + 20 * i));
+  }
+  return map;
+}
+
 // Where edges hide, a wide posterior must not let strangers in that would be refused elsewhere.
 TEST(LedIdRecognizer, GateNoWiderThanEdgesAnywhereLeave)
 {
-  const vpLampMap map{{lamp("A", 2000)}};
+  const vpLampMap map = crowdedMap();
   vpLampObservation seen = stripes(2007, 3);
   EXPECT_EQ(recognized(map, seen).id, "A");
   seen.features.frequencyBound = 2;
@@ -161,9 +171,18 @@ TEST(LedIdRecognizer, HiddenEdgesNameNoLamp)
 {
   vpLampObservation seen = stripes(2000, 9);
   seen.features.frequencyBound = 2;
-  seen = recognized({{lamp("A", 2000)}}, seen);
+  seen = recognized(crowdedMap(), seen);
   EXPECT_TRUE(seen.id.empty());
   EXPECT_NE(seen.remark.find("hide"), std::string::npos);
+}
+
+TEST(LedIdRecognizer, HiddenEdgesOfALoneLampNameIt)
+{
+  vpLampObservation seen = stripes(2007, 9);
+  seen.features.frequencyBound = 2;
+  EXPECT_EQ(recognized({{lamp("A", 2000)}}, seen).id, "A"); // no unknown lamp is likely to be so near
+  seen.features.frequency = 2030;
+  EXPECT_TRUE(recognized({{lamp("A", 2000)}}, seen).id.empty());
 }
 
 TEST(LedIdRecognizer, StatedDutySaysWhichFrequencyOfARidge)
