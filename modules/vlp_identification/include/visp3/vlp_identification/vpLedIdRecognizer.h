@@ -35,10 +35,10 @@ struct VISP_EXPORT vpRowTimeError {
 
   An identifier that lies within `gate` standard deviations in frequency, and `shapeGate` in duty and phase
   difference, is a candidate. Near simple fractions of the rate of lines all edges may fall between exposures:
-  the frequency is then less certain, and lamps that the map does not know may pass the gate. So the gate on
-  the estimate's error is limited to `boundGate` times the bound (vpStripeFeatures::frequencyBound), or to
-  where an unknown lamp lies with probability `maxChance`, which in a map of few lamps is wider. A frequency
-  whose sigma is more than `maxSpread` times that bound has no candidate.
+  the frequency is then less certain, and lamps that the map does not know may pass the gate. So the
+  estimate's error is limited to `boundGate` times a bound: vpStripeFeatures::frequencyBound, or a wider one
+  within which an unknown lamp lies with probability `maxChance`, as in maps of few lamps. A frequency whose
+  sigma is more than `maxSpread` times the bound has no candidate.
   Where duty and frequency are known together only (vpStripeFeatures::alongDuty), each identifier is compared
   with the frequency that belongs to its own duty, and one that states none within `spreadGate` of all of
   them. Two pulses with a gap shorter than the exposure may be seen as one, of any duty from about theirs to
@@ -64,7 +64,7 @@ public:
   double leastBlinking = 2. / 3;   // of the light in an outline, that its lamp's stripes have to explain
   double minConfidence = 0.99;     // probability below which no id is given
   double maxFrequencySigma = 0.03; // share of the frequency: less certain stripes are recognised as nothing
-  double maxSpread = 4;            // frequencySigma over frequencyBound, above which there is no id
+  double maxSpread = 4;            // frequencySigma over that bound, above which there is no id
   double maxChance = 0.005;        // probability of an unknown lamp within the bounds of any of the map's
   double dutyError = 0.03;         // systematic error of a measured duty, standard deviation
   double phaseError = 0.01;        // of a measured phase difference, periods
