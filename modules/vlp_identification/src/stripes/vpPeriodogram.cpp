@@ -201,7 +201,7 @@ vpStripeStarts::Sinusoid vpStripeStarts::sinusoidAt(const vpStripeProfile &profi
 
 std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripeProfile &profile,
                                                                   const std::vector<double> &envelope,
-                                                                  double modelError, double slowest)
+                                                                  double modelError)
 {
   const LeastSquares fit(profile, envelope, modelError);
   static const double finest = 0.1; // cycles over the profile, from frequency to frequency
@@ -221,14 +221,7 @@ std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripe
     all.push_back(fit.at(k * perStep, {transforms.weight(k), transforms.weightTime(k),
                                        transforms.weightLight(k), transforms.weight(2 * k)}));
   }
-  std::vector<Sinusoid> maxima = maximaOf(all);
-  if (!maxima.empty() && maxima.front().frequency < slowest) {
-    return {};
-  }
-  maxima.erase(std::remove_if(maxima.begin(), maxima.end(),
-                              [slowest](const Sinusoid &each) { return each.frequency < slowest; }),
-               maxima.end());
-  return maxima;
+  return maximaOf(all);
 }
 
 END_VISP_NAMESPACE

@@ -42,6 +42,13 @@ bool asStated(const vpWaveformFit &fit, const vpStripeProfile &profile)
   static const double about = 0.35; // of the logarithm
   return std::abs(std::log(fit.value(vpWaveformFit::exposure) / profile.exposure)) < about;
 }
+
+//! Of a lamp that is as bright all over.
+std::vector<double> evenEnvelope(const vpStripeProfile &profile)
+{
+  const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
+  return std::vector<double>(profile.light.size(), std::max(1.0, brightest));
+}
 } // namespace
 
 vpPulseSearch::vpPulseSearch(const vpStripeProfile &profile, std::vector<double> envelope, int order,
@@ -52,7 +59,16 @@ vpPulseSearch::vpPulseSearch(const vpStripeProfile &profile, std::vector<double>
   settings.exposureTolerance = analyzer.exposureTolerance;
   settings.envelopeOrder = order;
   m_edges = vpStripeStarts::edges(profile, m_envelope);
-  m_pulses = vpStripeStarts::pulses(m_edges);
+  takePulses(m_edges);
+  if (!m_pulses) { // an envelope of few stripes may follow noise
+    takePulses(vpStripeStarts::edges(profile, evenEnvelope(profile)));
+  }
+}
+
+void vpPulseSearch::takePulses(const std::vector<vpStripeStarts::Edge> &edges)
+{
+  m_gap = m_gap || (edges.size() == 2 && !edges.front().rising);
+  m_pulses = vpStripeStarts::pulses(edges);
   if (m_pulses && m_pulses->frequency < m_slowest) {
     m_pulses.reset();
   }
@@ -60,9 +76,7 @@ vpPulseSearch::vpPulseSearch(const vpStripeProfile &profile, std::vector<double>
 
 vpPulseSearch vpPulseSearch::evenly(bool explained, const vpStripeAnalyzer &analyzer) const
 {
-  const std::vector<double> &light = m_profile->light;
-  const double brightest = *std::max_element(light.begin(), light.end());
-  vpPulseSearch even(*m_profile, std::vector<double>(light.size(), std::max(1.0, brightest)), 0, analyzer);
+  vpPulseSearch even(*m_profile, evenEnvelope(*m_profile), 0, analyzer);
   if (m_pulses) {
     even.m_pulses = m_pulses;
     even.m_byPulses = explained;
@@ -83,7 +97,13 @@ const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
 {
   static const size_t most = 3;
   if (!m_candidates) {
-    m_candidates = vpStripeStarts::periodogram(*m_profile, m_envelope, settings.modelError, m_slowest);
+    m_candidates = vpStripeStarts::periodogram(*m_profile, m_envelope, settings.modelError);
+    auto slow = [this](const vpStripeStarts::Sinusoid &each) { return each.frequency < m_slowest; };
+    if (!m_candidates->empty() && slow(m_candidates->front()) && !m_gap) {
+      m_candidates->clear();
+    }
+    m_candidates->erase(std::remove_if(m_candidates->begin(), m_candidates->end(), slow),
+                        m_candidates->end());
     m_candidates->resize(std::min(m_candidates->size(), most));
   }
   return *m_candidates;

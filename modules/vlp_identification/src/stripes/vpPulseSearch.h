@@ -34,7 +34,10 @@ public:
 
   //! Whether there are stripes at all: a sinusoid explains that much more than a level and a slope.
   bool significant(double least);
-  //! The likeliest sinusoids, the best first.
+  /*!
+    The likeliest sinusoids, the best first. None where one that is slower than any lamp is likelier: what
+    shades a lamp, or a room, changes slowly; so do only parts of two stripes and the gap between them.
+  */
   const std::vector<vpStripeStarts::Sinusoid> &candidates();
   //! Whether the edges of the stripes are those of one pulse a period, or of two.
   bool edgesAgree(bool twoPulse) const
@@ -46,11 +49,14 @@ public:
   std::optional<vpWaveformFit> twoPulses();
 
 private:
+  void takePulses(const std::vector<vpStripeStarts::Edge> &edges);
+
   const vpStripeProfile *m_profile;
   std::vector<double> m_envelope;
   double m_slowest; // Hz
   std::vector<vpStripeStarts::Edge> m_edges;
   std::optional<vpStripeStarts::Pulses> m_pulses;
+  bool m_gap = false;      // all that shows is parts of two stripes and the gap between them
   bool m_byPulses = false; // what the edges say is all there is to try
   std::optional<std::vector<vpStripeStarts::Sinusoid>> m_candidates;
 };

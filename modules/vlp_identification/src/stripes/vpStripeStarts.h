@@ -51,11 +51,10 @@ struct Sinusoid {
 
 /*!
   Least-squares periodogram of the profile with its envelope divided out: at each frequency a sinusoid beside
-  a level and a slope. Local maxima at \e slowest (Hz) and above, the best first; none where a slower one is
-  better: what shades a lamp, or a room, changes slowly.
+  a level and a slope. Local maxima, the best first.
 */
 std::vector<Sinusoid> periodogram(const vpStripeProfile &profile, const std::vector<double> &envelope,
-                                  double modelError, double slowest);
+                                  double modelError);
 
 //! The same at one frequency, Hz.
 Sinusoid sinusoidAt(const vpStripeProfile &profile, const std::vector<double> &envelope, double modelError,
