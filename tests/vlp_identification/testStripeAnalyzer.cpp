@@ -253,6 +253,30 @@ TEST(StripeAnalyzer, SteadyLightHasNoStripes)
   }
 }
 
+// A cosine slower than any lamp fits both better than one that is as fast as a lamp.
+TEST(StripeAnalyzer, GapBetweenTwoStripesMayBeALampsAndOneStripeIsNot)
+{
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise;
+  vpStripeAnalyzer analyzer;
+  analyzer.minFrequency = 500;
+  // 70 lines of 40 us, the middle 40 of them unlike those before and after: a period of 50 is 500 Hz.
+  auto seen = [&](double middle, double ends, double sigma) {
+    vpStripeProfile profile;
+    profile.exposure = 40e-6;
+    for (int i = 0; i < 70; ++i) {
+      profile.time.push_back(40e-6 * i);
+      profile.light.push_back((i >= 15 && i < 55 ? middle : ends) + sigma * noise(random));
+      profile.sigma.push_back(sigma);
+    }
+    return profile;
+  };
+  for (double sigma : {0.1, 1., 5.}) {
+    EXPECT_TRUE(analyzer.blinks(seen(0, 150, sigma))) << sigma << " grey levels of noise";
+    EXPECT_FALSE(analyzer.blinks(seen(150, 0, sigma))) << sigma << " grey levels of noise";
+  }
+}
+
 TEST(StripeAnalyzer, LightThatChangesSlowerThanAnyLampDoesNotBlink)
 {
   std::mt19937 random(3);
