@@ -36,7 +36,7 @@ public:
   bool significant(double least);
   /*!
     The likeliest sinusoids, the best first. None where one that is slower than any lamp is likelier: what
-    shades a lamp, or a room, changes slowly; so do only parts of two stripes and the gap between them.
+    shades a lamp, or a room, changes slowly. Two stripes with one gap are exempt: cut short, they look slow.
   */
   const std::vector<vpStripeStarts::Sinusoid> &candidates();
   //! Whether the edges of the stripes are those of one pulse a period, or of two.
