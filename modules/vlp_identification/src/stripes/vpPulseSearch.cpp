@@ -98,12 +98,9 @@ const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
   static const size_t most = 3;
   if (!m_candidates) {
     m_candidates = vpStripeStarts::periodogram(*m_profile, m_envelope, settings.modelError);
-    auto slow = [this](const vpStripeStarts::Sinusoid &each) { return each.frequency < m_slowest; };
-    if (!m_candidates->empty() && slow(m_candidates->front()) && !m_gap) {
+    if (!m_candidates->empty() && m_candidates->front().frequency < m_slowest && !m_gap) {
       m_candidates->clear();
     }
-    m_candidates->erase(std::remove_if(m_candidates->begin(), m_candidates->end(), slow),
-                        m_candidates->end());
     m_candidates->resize(std::min(m_candidates->size(), most));
   }
   return *m_candidates;
