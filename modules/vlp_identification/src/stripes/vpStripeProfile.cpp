@@ -107,7 +107,7 @@ private:
 std::vector<Chord> chordsOf(const cv::Mat_<unsigned char> &lines, const vpOutlineFit &fit,
                             const vpLedRoi &roi)
 {
-  static const double middle = 0.35; // of a chord
+  static const double middle = 0.35, most = 0.7; // of a chord: of a soft lamp; of a region
   std::vector<Chord> chords;
   auto add = [&](int line, double first, double last, double share) {
     const double half = 0.5 * share * (last - first);
@@ -121,7 +121,7 @@ std::vector<Chord> chordsOf(const cv::Mat_<unsigned char> &lines, const vpOutlin
   if (outline.shape == vpLampOutline::Shape::region) {
     for (const Chord &chord : roi.hull()) {
       if (chord.line >= roi.box.y && chord.line < roi.box.br().y) {
-        add(chord.line, chord.first, chord.last, middle);
+        add(chord.line, chord.first, chord.last, most);
       }
     }
     return chords;
