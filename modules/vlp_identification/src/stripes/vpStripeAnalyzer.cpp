@@ -206,12 +206,7 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
 
 bool vpStripeAnalyzer::blinks(const vpStripeProfile &profile) const
 {
-  if (profile.light.size() < fewestLines) {
-    return false;
-  }
-  Stripes stripes(profile, *this);
-  const bool one = stripes.peaks.size() == 1 && stripes.search.isOneStripe();
-  return !one && stripes.blink(profile, *this);
+  return profile.light.size() >= fewestLines && Stripes(profile, *this).blink(profile, *this);
 }
 
 vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const

@@ -101,7 +101,7 @@ public:
   double minWordConfidence = 0.99; // probability that all chips of a word are right below which none is given
   std::vector<vpWordFormat> words; // that the map's lamps send; other formats need more repetitions
 
-  //! Whether there are stripes, before anything is fitted to them: one alone has the light's own shape.
+  //! Whether there are stripes at all, before anything is fitted to them.
   bool blinks(const vpStripeProfile &profile) const;
 
   //! Signal, frequency, duty, phase difference, chips, stripes, modulation, misfit; area is left to the
