@@ -42,13 +42,6 @@ bool asStated(const vpWaveformFit &fit, const vpStripeProfile &profile)
   static const double about = 0.35; // of the logarithm
   return std::abs(std::log(fit.value(vpWaveformFit::exposure) / profile.exposure)) < about;
 }
-
-//! Of a lamp that is as bright all over.
-std::vector<double> evenEnvelope(const vpStripeProfile &profile)
-{
-  const double brightest = *std::max_element(profile.light.begin(), profile.light.end());
-  return std::vector<double>(profile.light.size(), std::max(1.0, brightest));
-}
 } // namespace
 
 vpPulseSearch::vpPulseSearch(const vpStripeProfile &profile, std::vector<double> envelope, int order,
@@ -61,7 +54,7 @@ vpPulseSearch::vpPulseSearch(const vpStripeProfile &profile, std::vector<double>
   m_edges = vpStripeStarts::edges(profile, m_envelope);
   takePulses(m_edges);
   if (!m_pulses) { // an envelope of few stripes may follow noise
-    takePulses(vpStripeStarts::edges(profile, evenEnvelope(profile)));
+    takePulses(vpStripeStarts::edges(profile, vpStripeStarts::envelope(profile, {}, 0)));
   }
 }
 
@@ -76,7 +69,7 @@ void vpPulseSearch::takePulses(const std::vector<vpStripeStarts::Edge> &edges)
 
 vpPulseSearch vpPulseSearch::evenly(bool explained, const vpStripeAnalyzer &analyzer) const
 {
-  vpPulseSearch even(*m_profile, evenEnvelope(*m_profile), 0, analyzer);
+  vpPulseSearch even(*m_profile, vpStripeStarts::envelope(*m_profile, {}, 0), 0, analyzer);
   if (m_pulses) {
     even.m_pulses = m_pulses;
     even.m_byPulses = explained;

@@ -35,8 +35,8 @@ public:
   //! Whether there are stripes at all: a sinusoid explains that much more than a level and a slope.
   bool significant(double least);
   /*!
-    The likeliest sinusoids, the best first. None where one that is slower than any lamp is likelier: what
-    shades a lamp, or a room, changes slowly. Two stripes with one gap are exempt: cut short, they look slow.
+    The likeliest sinusoids, the best first. None where the best is slower than any lamp: what shades a lamp,
+    or a room, changes slowly. Two stripes with one gap are exempt: cut short, they look slow.
   */
   const std::vector<vpStripeStarts::Sinusoid> &candidates();
   //! Whether the edges of the stripes are those of one pulse a period, or of two.

@@ -29,7 +29,7 @@ std::vector<size_t> wholePeaks(const vpStripeProfile &profile, std::vector<size_
 
 /*!
   How bright the lamp is at each line while it is lit, grey levels: the exponential of a polynomial of the
-  given order through the logarithms of the peaks' heights.
+  given order through the logarithms of the peaks' heights. Of no peaks, that of a lamp as bright all over.
 */
 std::vector<double> envelope(const vpStripeProfile &profile, const std::vector<size_t> &peaks, int order);
 
