@@ -104,7 +104,7 @@ TEST(AravisCamera, WhatNobodyTakesIsCounted)
   EXPECT_GE(camera.counters().late, 4u);
   EXPECT_GE(camera.counters().dropped, 10u);
   EXPECT_EQ(camera.counters().delivered, 11u);
-  EXPECT_EQ(camera.counters().broken, 0u);
+  EXPECT_LE(camera.counters().broken, 1u) << "only the frame that was arriving when there was room again";
   EXPECT_NE(camera.remark().find("dropped"), std::string::npos);
 }
 
