@@ -63,6 +63,33 @@ TEST(LedRoiDetector, DarkStripesDoNotBreakALampApart)
               << diameter << " px, gap " << gap << ", lit " << lit << ", phase " << phase;
 }
 
+TEST(LedRoiDetector, HullIsTheDiscWithItsDarkStripes)
+{
+  for (const double phase : phases) {
+    const double radius = 40;
+    const vpLampPicture picture = alone(disc(0, 0, radius, 150, 20, 0.5, phase));
+    const vpImage<unsigned char> I = picture.render();
+    const std::vector<vpLedRoi> rois = vpLedRoiDetector().detect(vpLinePicture(I, false).grey);
+    ASSERT_EQ(rois.size(), 1u);
+    const std::vector<vpLedChord> hull = rois[0].hull();
+    ASSERT_EQ(hull.size(), static_cast<size_t>(rois[0].box.height));
+    const Eigen::Vector2d centre = picture.lamps[0].centre;
+    for (size_t i = 0; i < hull.size(); ++i) {
+      EXPECT_EQ(hull[i].line, rois[0].box.y + static_cast<int>(i));
+      const double v = hull[i].line - centre.y(), half = std::sqrt(std::max(0., radius * radius - v * v));
+      if (half > 0.5 * radius) { // nearer to its top and bottom the least blur makes a line far longer
+        EXPECT_NEAR(hull[i].first, centre.x() - half, 4) << "line " << i << ", phase " << phase;
+        EXPECT_NEAR(hull[i].last, centre.x() + half, 4) << "line " << i << ", phase " << phase;
+      }
+    }
+    for (const vpLedChord &chord : rois[0].chords) {
+      const vpLedChord &line = hull[static_cast<size_t>(chord.line - rois[0].box.y)];
+      EXPECT_LE(line.first, chord.first);
+      EXPECT_GE(line.last, chord.last);
+    }
+  }
+}
+
 namespace
 {
 //! Two discs with \e gap between them, across the lines or along the readout.

@@ -260,20 +260,68 @@ TEST(StripeAnalyzer, GapBetweenTwoStripesMayBeALampsAndOneStripeIsNot)
   std::normal_distribution<double> noise;
   vpStripeAnalyzer analyzer;
   analyzer.minFrequency = 500;
-  // 70 lines of 40 us, the middle 40 of them unlike those before and after: a period of 50 is 500 Hz.
-  auto seen = [&](double middle, double ends, double sigma) {
+  // 70 lines of 40 us, some in their middle unlike those before and after: a period of 50 is 500 Hz.
+  auto seen = [&](int lines, double middle, double ends, double sigma) {
     vpStripeProfile profile;
     profile.exposure = 40e-6;
     for (int i = 0; i < 70; ++i) {
       profile.time.push_back(40e-6 * i);
-      profile.light.push_back((i >= 15 && i < 55 ? middle : ends) + sigma * noise(random));
+      profile.light.push_back((2 * std::abs(i - 35) < lines ? middle : ends) + sigma * noise(random));
       profile.sigma.push_back(sigma);
     }
     return profile;
   };
   for (double sigma : {0.1, 1., 5.}) {
-    EXPECT_TRUE(analyzer.blinks(seen(0, 150, sigma))) << sigma << " grey levels of noise";
-    EXPECT_FALSE(analyzer.blinks(seen(150, 0, sigma))) << sigma << " grey levels of noise";
+    EXPECT_TRUE(analyzer.blinks(seen(40, 0, 150, sigma))) << sigma << " grey levels of noise";
+    for (int lines : {12, 20, 40, 60}) {
+      EXPECT_FALSE(analyzer.blinks(seen(lines, 150, 0, sigma)))
+          << lines << " lit lines, " << sigma << " grey levels of noise";
+    }
+  }
+}
+
+TEST(StripeAnalyzer, ShallowStripesBetweenSoftEdgesBlink)
+{
+  for (double ripple : {0., 0.02, 0.12, 0.2}) { // of the mean light
+    vpStripeProfile profile;
+    profile.exposure = 120e-6;
+    for (int i = 0; i < 100; ++i) {
+      const double edge = std::min({1., 0.25 * (i + 1), 0.25 * (100 - i)});
+      profile.time.push_back(40e-6 * i);
+      profile.light.push_back(edge * 150 * (1 + ripple * std::sin(2 * M_PI * i / 3.7)));
+      profile.sigma.push_back(1);
+    }
+    EXPECT_EQ(vpStripeAnalyzer().blinks(profile), ripple > 0.1) << ripple;
+  }
+}
+
+TEST(StripeAnalyzer, TubeAtAnyAngleIsAsBrightOnAllItsLines)
+{
+  const double pi = std::acos(-1.);
+  for (double angle : {0., 3., 10., 30., 60., 80.}) {
+    const Eigen::Vector2d along(std::cos(angle * pi / 180), std::sin(angle * pi / 180));
+    vpImage<unsigned char> I(440, 440, 5);
+    for (unsigned int v = 0; v < I.getHeight(); ++v) {
+      for (unsigned int u = 0; u < I.getWidth(); ++u) {
+        const Eigen::Vector2d from(u - 220., v - 220.);
+        const double outside = std::max(std::abs(from.dot(along)) - 200,
+                                        std::abs(from.x() * along.y() - from.y() * along.x()) - 12);
+        I[v][u] = static_cast<unsigned char>(5 + 180 * std::clamp(0.5 - 0.5 * outside, 0., 1.));
+      }
+    }
+    const vpLinePicture lines(I, false);
+    const auto rois = vpLedRoiDetector().detect(lines.grey);
+    ASSERT_EQ(rois.size(), 1u) << angle << " degrees";
+    vpRollingShutter shutter;
+    shutter.rowTime = 40e-6;
+    const vpLineTiming timing(shutter, {}, I.getWidth(), I.getHeight());
+    const vpStripeProfile profile =
+        vpStripeProfile::along(lines.grey, timing, vpOutlineFitter::boxOf(rois[0]), rois[0]);
+    const size_t ends = 6; // lines that the tube's own edges are on
+    ASSERT_GT(profile.light.size(), 2 * ends) << angle << " degrees";
+    for (size_t i = ends; i + ends < profile.light.size(); ++i) {
+      EXPECT_NEAR(profile.light[i], 185, 10) << "line " << i << " of a tube at " << angle << " degrees";
+    }
   }
 }
 

@@ -102,6 +102,25 @@ vpChordHull::Extent::Extent(const Points &polygon, const cv::Rect &box)
   }
 }
 
+std::vector<vpLedChord> vpLedRoi::hull() const
+{
+  if (chords.empty()) {
+    return {};
+  }
+  Points ends;
+  for (const vpLedChord &chord : chords) {
+    ends.emplace_back(static_cast<float>(chord.first), static_cast<float>(chord.line));
+    ends.emplace_back(static_cast<float>(chord.last), static_cast<float>(chord.line));
+  }
+  const cv::Rect lines(0, chords.front().line, 0, chords.back().line - chords.front().line + 1);
+  const vpChordHull::Extent extent(vpChordHull::of(ends), lines);
+  std::vector<vpLedChord> hull;
+  for (int i = 0; i < lines.height; ++i) {
+    hull.push_back({lines.y + i, cvCeil(extent.first[i]), cvFloor(extent.last[i])});
+  }
+  return hull;
+}
+
 double vpChordHull::solidity(const std::vector<vpLedChord> &chords, const Extent &hull, int firstLine)
 {
   double lit = 0;

@@ -233,7 +233,7 @@ double vpChordShape::rectangleMisfit(const std::vector<cv::Point2f> &points)
   if (points.size() < 6) {
     return noFit;
   }
-  const cv::RotatedRect r = cv::minAreaRect(points);
+  const cv::RotatedRect r = cv::minAreaRect(vpChordHull::of(points)); // of fewer points
   const double c = std::cos(r.angle * CV_PI / 180);
   const double s = std::sin(r.angle * CV_PI / 180);
   double sum = 0;

@@ -23,16 +23,6 @@ using Stripe = vpLevelStripes::Stripe;
 
 const int minStripeWidth = 3; // samples; narrower ones are specks
 
-//! Of a line.
-int brightest(const unsigned char *row, int first, int last)
-{
-  unsigned char most = 0;
-  for (int x = first; x <= last; ++x) {
-    most = std::max(most, row[x]);
-  }
-  return most;
-}
-
 //! Appends the runs of line \e y, from sample \e first to \e last, that are brighter than \e grey.
 void scan(const unsigned char *row, int y, int first, int last, unsigned char grey, int parent,
           std::vector<Run> &runs)
@@ -162,7 +152,8 @@ vpLevelStripes::vpLevelStripes(const cv::Mat_<unsigned char> &lines, double leve
   for (size_t i = 0; i < found.size(); ++i) {
     int &peak = peaks[root[i]];
     if (peak < leastPeak && boxes[root[i]].width >= minStripeWidth) {
-      peak = std::max(peak, brightest(lines[found[i].line], found[i].first, found[i].last));
+      peak = std::max<int>(peak, vpBrighter::brightest(lines[found[i].line] + found[i].first,
+                                                       found[i].last - found[i].first + 1));
     }
   }
   std::vector<int> number(found.size(), -1); // of a root's stripe

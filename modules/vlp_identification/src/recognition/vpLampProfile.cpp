@@ -91,6 +91,9 @@ vpStripeProfile vpLedDetector::profile(const vpImage<unsigned char> &I, const vp
   if (roi.box.empty()) {
     return {};
   }
+  for (const int line : {roi.box.y, roi.box.br().y - 1}) {
+    roi.chords.push_back({line, roi.box.x, roi.box.br().x - 1});
+  }
   static const double sigmas = 3; // of the blur, beyond which an edge shows no more of its lamp
   fit.background = backgroundOf(picture.grey, fit.outline, roi.box, sigmas * lamp.blur + 1);
   vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);

@@ -357,7 +357,9 @@ void vpLedDetector::shareExposure(const vpLinePicture &picture, std::vector<Regi
 //! A region as the picture shows it; of what does not blink the outline is no matter.
 vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
 {
-  return observe(picture, roi, !roi.steady && (vpOutlineFitter::looksWhole(roi) || mayBlink(picture, roi)));
+  const bool dark = roi.chords.size() < static_cast<size_t>(roi.box.height); // some of its lines
+  const bool blinks = dark && vpOutlineFitter::looksWhole(roi);
+  return observe(picture, roi, !roi.steady && (blinks || mayBlink(picture, roi)));
 }
 
 vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi, bool blinks)

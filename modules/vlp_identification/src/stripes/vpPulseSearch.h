@@ -39,6 +39,8 @@ public:
     or a room, changes slowly. Two stripes with one gap are exempt: cut short, they look slow.
   */
   const std::vector<vpStripeStarts::Sinusoid> &candidates();
+  //! Whether no more shows than where one stripe begins, ends, or both.
+  bool isOneStripe() const { return !m_edges.empty() && m_edges.size() < 3 && !m_gap; }
   //! Whether the edges of the stripes are those of one pulse a period, or of two.
   bool edgesAgree(bool twoPulse) const
   {

@@ -60,6 +60,40 @@ struct Stripes {
 
 const size_t fewestLines = 6;
 
+/*!
+  What is well inside the only stripe of a profile: its edges are as long within as without half its light,
+  and end softly. Where the exposure is nearly a period that one holds the lamp's stripes, which are shallow.
+*/
+vpStripeProfile insideOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
+{
+  static const double half = 0.5, dim = 0.1; // of the peak's light
+  static const long softly = 2;
+  vpStripeProfile inside = profile;
+  for (std::vector<double> *each : {&inside.time, &inside.light, &inside.sigma}) {
+    each->clear();
+  }
+  if (peaks.empty()) {
+    return inside;
+  }
+  const auto peak = static_cast<long>(peaks.front()), lines = static_cast<long>(profile.light.size());
+  const auto light = [&](long line) { return profile.light[static_cast<size_t>(line)]; };
+  const auto reach = [&](double share, long step) {
+    long line = peak;
+    while (line + step >= 0 && line + step < lines && light(line + step) > share * light(peak)) {
+      line += step;
+    }
+    return line;
+  };
+  const long first = reach(half, -1), last = reach(half, 1);
+  for (long line = first + softly * (first - reach(dim, -1)); line <= last - softly * (reach(dim, 1) - last);
+       ++line) {
+    inside.time.push_back(profile.time[static_cast<size_t>(line)]);
+    inside.light.push_back(light(line));
+    inside.sigma.push_back(profile.sigma[static_cast<size_t>(line)]);
+  }
+  return inside;
+}
+
 //! Whether a camera that sharpens would show: on stripes wide enough, and on more lines than such a wave
 //! could follow by chance.
 bool showsSharpening(const vpStripeProfile &profile, double frequency)
@@ -206,7 +240,15 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
 
 bool vpStripeAnalyzer::blinks(const vpStripeProfile &profile) const
 {
-  return profile.light.size() >= fewestLines && Stripes(profile, *this).blink(profile, *this);
+  if (profile.light.size() < fewestLines) {
+    return false;
+  }
+  Stripes stripes(profile, *this);
+  if (stripes.peaks.size() > 1 || !stripes.search.isOneStripe()) {
+    return stripes.blink(profile, *this);
+  }
+  const vpStripeProfile inside = insideOf(profile, stripes.peaks);
+  return inside.light.size() >= fewestLines && Stripes(inside, *this).blink(inside, *this);
 }
 
 vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const

@@ -19,10 +19,7 @@ namespace
 
 const unsigned char nearlyWhite = 250; // grey value from which there may have been more light than it shows
 
-//! Samples of one line that lie inside the lamp.
-struct Chord {
-  int line, first, last;
-};
+using Chord = vpLedChord; // the samples of one line that lie inside the lamp
 
 //! Mean of the dimmest \e share of a line's samples, grey levels.
 double meanOfDimmest(const unsigned char *row, const Chord &chord, double share)
@@ -106,6 +103,47 @@ private:
          m_noise = 0;
 };
 
+//! The samples inside the lamp, line by line: well inside where it has no sharp edge, or none that is known.
+std::vector<Chord> chordsOf(const cv::Mat_<unsigned char> &lines, const vpOutlineFit &fit,
+                            const vpLedRoi &roi)
+{
+  static const double middle = 0.35, most = 0.7; // of a chord: of a soft lamp; of a region
+  std::vector<Chord> chords;
+  auto add = [&](int line, double first, double last, double share) {
+    const double half = 0.5 * share * (last - first);
+    const int left = std::max(0, static_cast<int>(std::ceil(0.5 * (first + last) - half))),
+              right = std::min(lines.cols - 1, static_cast<int>(std::floor(0.5 * (first + last) + half)));
+    if (right - left >= 2) {
+      chords.push_back({line, left, right});
+    }
+  };
+  const vpLampOutline &outline = fit.outline;
+  if (outline.shape == vpLampOutline::Shape::region) {
+    for (const Chord &chord : roi.hull()) {
+      if (chord.line >= roi.box.y && chord.line < roi.box.br().y) {
+        add(chord.line, chord.first, chord.last, most);
+      }
+    }
+    return chords;
+  }
+  const bool ellipse = outline.shape == vpLampOutline::Shape::ellipse; // else its sides along the lines hide
+  const bool soft = fit.blur > 0.1 * outline.diameter() / 2;
+  static const double beside = 1; // px: half a line, and half of the pixel that a sharp edge divides
+  const double margin = soft ? 0 : 2 * fit.blur + beside;
+  const Eigen::Vector4d box = outline.box();
+  const double top = ellipse ? std::max(0.0, box(1)) : std::max(roi.box.y + margin, box(1));
+  const double bottom =
+      ellipse ? std::min(lines.rows - 1.0, box(3)) : std::min(roi.box.br().y - 1 - margin, box(3));
+  const double centre = 0.5 * (box(1) + box(3)), inside = 1 - 2 * margin / (box(3) - box(1));
+  for (int line = static_cast<int>(std::ceil(top)); inside > 0 && line <= bottom; ++line) {
+    double first, last;
+    if (outline.stretch(centre + (line - centre) / inside, first, last)) {
+      add(line, first, last, soft ? middle : inside);
+    }
+  }
+  return chords;
+}
+
 /*!
   A lamp adds light: its surroundings are no brighter than its darkest lines, which a glow beside its edge may
   make them seem. \return By how much they were, grey levels up to 0.
@@ -172,29 +210,7 @@ double vpStripeProfile::depth() const
 vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                        const vpOutlineFit &fit, const vpLedRoi &roi)
 {
-  const vpLampOutline &outline = fit.outline;
-  const bool ellipse = outline.shape == vpLampOutline::Shape::ellipse; // else its sides along the lines hide
-  const bool soft = outline.shape == vpLampOutline::Shape::region || fit.blur > 0.1 * outline.diameter() / 2;
-  static const double beside = 1; // px: half a line, and half of the pixel that a sharp edge divides
-  const double margin = soft ? 0 : 2 * fit.blur + beside;
-  const Eigen::Vector4d box = outline.box();
-  const double top = ellipse ? std::max(0.0, box(1)) : std::max(roi.box.y + margin, box(1));
-  const double bottom =
-      ellipse ? std::min(lines.rows - 1.0, box(3)) : std::min(roi.box.br().y - 1 - margin, box(3));
-  static const double middle = 0.35; // of a chord
-  const double centre = 0.5 * (box(1) + box(3)), inside = 1 - 2 * margin / (box(3) - box(1));
-  std::vector<Chord> chords;
-  for (int line = static_cast<int>(std::ceil(top)); inside > 0 && line <= bottom; ++line) {
-    double first, last;
-    if (outline.stretch(centre + (line - centre) / inside, first, last)) {
-      const double half = 0.5 * (soft ? middle : inside) * (last - first);
-      const int left = std::max(0, static_cast<int>(std::ceil(0.5 * (first + last) - half))),
-                right = std::min(lines.cols - 1, static_cast<int>(std::floor(0.5 * (first + last) + half)));
-      if (right - left >= 2) {
-        chords.push_back({line, left, right});
-      }
-    }
-  }
+  const std::vector<Chord> chords = chordsOf(lines, fit, roi);
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();

@@ -49,6 +49,9 @@ struct VISP_EXPORT vpLedRoi {
   bool steady = false;    // shines without dark lines, for longer than any lamp
   bool cutAcross = false; // touches the first or last sample
   bool cutAlong = false;  // touches the first or last line, or may go on beyond it after a dark stripe
+
+  //! The lines of the chords' convex hull, of its dark stripes as well.
+  std::vector<vpLedChord> hull() const;
 };
 
 /*!

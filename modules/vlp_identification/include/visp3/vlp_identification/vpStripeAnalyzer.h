@@ -33,9 +33,10 @@ struct VISP_EXPORT vpStripeProfile {
     However an emitter's light is spread, it makes the stripes' envelope, which the waveform's fit finds.
     Samples count that lie wholly inside, of a quadrilateral in lines from the first to the last lit one of
     \e roi: its sides along the lines are hardly seen. Of a lamp with a soft edge only the middle strip
-    counts, where its glow is even. Where the grey scale's bright end clips samples, the dimmest of each line
-    count, as many as it spares in all lines. A quantile commutes with clipping, a mean does not. The
-    surroundings are no brighter than the lamp's darkest lines.
+    counts, where its glow is even; where there is no outline, most of the hull of the region's chords.
+    Where the grey scale's bright end clips samples, the dimmest of each line count, as many as it spares in
+    all lines. A quantile commutes with clipping, a mean does not. The surroundings are no brighter than the
+    lamp's darkest lines.
   */
   static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                const vpOutlineFit &fit, const vpLedRoi &roi);
@@ -101,7 +102,7 @@ public:
   double minWordConfidence = 0.99; // probability that all chips of a word are right below which none is given
   std::vector<vpWordFormat> words; // that the map's lamps send; other formats need more repetitions
 
-  //! Whether there are stripes at all, before anything is fitted to them.
+  //! Whether there are stripes, before anything is fitted to them: one alone has the light's own shape.
   bool blinks(const vpStripeProfile &profile) const;
 
   //! Signal, frequency, duty, phase difference, chips, stripes, modulation, misfit; area is left to the
