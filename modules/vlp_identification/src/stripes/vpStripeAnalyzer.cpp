@@ -56,40 +56,32 @@ struct Stripes {
   {
     return depth >= analyzer.minModulation && search.significant(analyzer.minSignificance);
   }
+
+  //! Whether they are several, too shallow to be peaks, as where the exposure is nearly a period: what rises
+  //! at one end and falls at the other is the light's own shape.
+  bool ripple(const vpStripeProfile &profile, const vpStripeAnalyzer &analyzer)
+  {
+    static const double fewest = 2;
+    const double span = std::abs(profile.time.back() - profile.time.front());
+    return blink(profile, analyzer) && !search.candidates().empty() &&
+           search.candidates().front().frequency * span >= fewest;
+  }
 };
 
 const size_t fewestLines = 6;
 
-/*!
-  What is well inside the only stripe of a profile: its edges are as long within as without half its light,
-  and end softly. Where the exposure is nearly a period that one holds the lamp's stripes, which are shallow.
-*/
-vpStripeProfile insideOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
+//! The lines of a profile between the first and the last that have half of its brightest line's light.
+vpStripeProfile insideOf(const vpStripeProfile &profile)
 {
-  static const double half = 0.5, dim = 0.1; // of the peak's light
-  static const long softly = 2;
+  static const double half = 0.5;
+  const double level = half * *std::max_element(profile.light.begin(), profile.light.end());
+  const auto lit = [level](double light) { return light > level; };
+  const auto begin = std::find_if(profile.light.begin(), profile.light.end(), lit) - profile.light.begin();
+  const auto end =
+      std::find_if(profile.light.rbegin(), profile.light.rend(), lit).base() - profile.light.begin();
   vpStripeProfile inside = profile;
   for (std::vector<double> *each : {&inside.time, &inside.light, &inside.sigma}) {
-    each->clear();
-  }
-  if (peaks.empty()) {
-    return inside;
-  }
-  const auto peak = static_cast<long>(peaks.front()), lines = static_cast<long>(profile.light.size());
-  const auto light = [&](long line) { return profile.light[static_cast<size_t>(line)]; };
-  const auto reach = [&](double share, long step) {
-    long line = peak;
-    while (line + step >= 0 && line + step < lines && light(line + step) > share * light(peak)) {
-      line += step;
-    }
-    return line;
-  };
-  const long first = reach(half, -1), last = reach(half, 1);
-  for (long line = first + softly * (first - reach(dim, -1)); line <= last - softly * (reach(dim, 1) - last);
-       ++line) {
-    inside.time.push_back(profile.time[static_cast<size_t>(line)]);
-    inside.light.push_back(light(line));
-    inside.sigma.push_back(profile.sigma[static_cast<size_t>(line)]);
+    *each = std::vector<double>(each->begin() + begin, each->begin() + std::max(begin, end));
   }
   return inside;
 }
@@ -247,8 +239,8 @@ bool vpStripeAnalyzer::blinks(const vpStripeProfile &profile) const
   if (stripes.peaks.size() > 1 || !stripes.search.isOneStripe()) {
     return stripes.blink(profile, *this);
   }
-  const vpStripeProfile inside = insideOf(profile, stripes.peaks);
-  return inside.light.size() >= fewestLines && Stripes(inside, *this).blink(inside, *this);
+  const vpStripeProfile inside = insideOf(profile);
+  return inside.light.size() >= fewestLines && Stripes(inside, *this).ripple(inside, *this);
 }
 
 vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
