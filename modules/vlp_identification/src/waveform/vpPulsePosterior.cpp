@@ -47,10 +47,9 @@ struct vpPulsePosterior::Range {
   double half = 0; // s, of the profile
 };
 
-//! What of a grid is likely, and moments over it: of frequency, delay and length as the grid has them.
+//! What of a grid is likely.
 struct vpPulsePosterior::Places {
   int first[3] = {1 << 20, 1 << 20, 1 << 20}, last[3] = {-1, -1, -1}; // frequency, delay, length
-  Moments moments;
 };
 
 //! One pulse, tabled by its delay.
@@ -187,12 +186,30 @@ double vpPulsePosterior::changeBetween(const Range &range) const
   return edges * seen * weight * moved / (m_lines.exposure * m_lines.exposure);
 }
 
-//! The places of the grid whose chi-square is within \e reach of the least.
-vpPulsePosterior::Places vpPulsePosterior::likely(const Range &range, double reach, double inflation) const
+//! The places of the grid whose chi-square is below \e limit.
+vpPulsePosterior::Places vpPulsePosterior::likely(const Range &range, double limit) const
 {
   Places places;
-  const float least = *std::min_element(m_chiSquares.begin(), m_chiSquares.end()),
-              limit = least + static_cast<float>(reach);
+  const float *chiSquares = m_chiSquares.data();
+  for (int k = 0; k < range.length.count; ++k)
+    for (int i = 0; i < range.frequency.count; ++i, chiSquares += range.delay.count)
+      for (int j = 0; j < range.delay.count; ++j) {
+        if (!(chiSquares[j] < limit)) {
+          continue;
+        }
+        const int at[3] = {i, j, k};
+        for (int axis = 0; axis < 3; ++axis) {
+          places.first[axis] = std::min(places.first[axis], at[axis]);
+          places.last[axis] = std::max(places.last[axis], at[axis]);
+        }
+      }
+  return places;
+}
+
+//! Over these places, of frequency, delay and length as the grid has them.
+vpPulsePosterior::Moments vpPulsePosterior::moments(const Range &range, double limit, double inflation) const
+{
+  const float least = *std::min_element(m_chiSquares.begin(), m_chiSquares.end());
   const Eigen::Vector3d about(range.frequency.middle, range.delay.middle, range.length.middle);
   double sum = 0;
   Eigen::Vector3d ofFirst = Eigen::Vector3d::Zero();
@@ -201,34 +218,28 @@ vpPulsePosterior::Places vpPulsePosterior::likely(const Range &range, double rea
   for (int k = 0; k < range.length.count; ++k)
     for (int i = 0; i < range.frequency.count; ++i)
       for (int j = 0; j < range.delay.count; ++j, ++place) {
-        if (!(m_chiSquares[place] < limit)) {
-          continue;
+        if (m_chiSquares[place] < limit) {
+          const double weight = std::exp(-0.5 * (m_chiSquares[place] - least) / inflation);
+          const Eigen::Vector3d x =
+              Eigen::Vector3d(range.frequency.at(i), range.delay.at(j), range.length.at(k)) - about;
+          sum += weight;
+          ofFirst += weight * x;
+          ofSecond += weight * x * x.transpose();
         }
-        const int at[3] = {i, j, k};
-        for (int axis = 0; axis < 3; ++axis) {
-          places.first[axis] = std::min(places.first[axis], at[axis]);
-          places.last[axis] = std::max(places.last[axis], at[axis]);
-        }
-        const double weight = std::exp(-0.5 * (m_chiSquares[place] - least) / inflation);
-        const Eigen::Vector3d x =
-            Eigen::Vector3d(range.frequency.at(i), range.delay.at(j), range.length.at(k)) - about;
-        sum += weight;
-        ofFirst += weight * x;
-        ofSecond += weight * x * x.transpose();
       }
   ofFirst /= sum;
   const auto cell = [](const Axis &axis) { return axis.count > 1 ? axis.step() : 1; };
-  places.moments.mean = about + ofFirst;
-  places.moments.covariance = ofSecond / sum - ofFirst * ofFirst.transpose();
-  places.moments.chiSquare = least;
-  places.moments.logEvidence =
-      std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) -
-      0.5 * least / inflation;
-  return places;
+  Moments moments;
+  moments.mean = about + ofFirst;
+  moments.covariance = ofSecond / sum - ofFirst * ofFirst.transpose();
+  moments.chiSquare = least;
+  moments.logEvidence = std::log(sum * cell(range.frequency) * cell(range.delay) * cell(range.length)) -
+                        0.5 * least / inflation;
+  return moments;
 }
 
 vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eigen::Vector3d &start,
-                                                  bool freeDuty, double inflation)
+                                                  bool freeDuty, double inflation, double most)
 {
   vpPulsePosterior posterior(lines, start);
   const double period = 1 / start(0),
@@ -240,8 +251,8 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
               {freeDuty ? 13 : 1, dutyStart * period, freeDuty ? 1.2 * lines.step : 0},
               half};
   static const int mostRounds = 5;
-  Moments moments;
-  for (int round = 0; round < mostRounds; ++round) {
+  double limit = 0;
+  for (int round = 1;; ++round) {
     if (freeDuty && range.length.middle - range.length.reach < shortest) {
       const double longest = range.length.middle + range.length.reach;
       range.length.middle = 0.5 * (shortest + longest);
@@ -250,9 +261,13 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
     posterior.evaluate(range);
     // Places between those of a coarse grid may be better, by as much as edges move on the way to them.
     static const double explained = 25;
-    const double between = posterior.changeBetween(range);
-    const Places places = posterior.likely(range, explained * inflation + between, inflation);
-    moments = places.moments;
+    const double between = posterior.changeBetween(range),
+                 least = *std::min_element(posterior.m_chiSquares.begin(), posterior.m_chiSquares.end());
+    limit = least + explained * inflation + between;
+    if (round == mostRounds || least - between > most) {
+      break;
+    }
+    const Places places = posterior.likely(range, limit);
     const int *first = places.first, *last = places.last;
     const bool filled = 2 * (last[0] - first[0]) >= range.frequency.count &&
                         2 * (last[1] - first[1]) >= range.delay.count &&
@@ -264,6 +279,7 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
     range.delay.narrow(first[1], last[1]);
     range.length.narrow(first[2], last[2]);
   }
+  Moments moments = posterior.moments(range, limit, inflation);
   // From delays and lengths to frequency, phase and duty: t = (k + shift - phase) / f, later by d is a phase
   // less by f d.
   Eigen::Matrix3d by = Eigen::Matrix3d::Zero();

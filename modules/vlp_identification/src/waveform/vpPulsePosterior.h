@@ -5,6 +5,7 @@
 #ifndef vpPulsePosterior_h
 #define vpPulsePosterior_h
 
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -47,8 +48,10 @@ public:
   };
 
   //! \param start Frequency, phase and duty, good to a line. \param freeDuty Whether the duty is unknown.
-  //! \param inflation Of the variances of the lines.
-  static Moments about(const Lines &lines, const Eigen::Vector3d &start, bool freeDuty, double inflation);
+  //! \param inflation Of the variances of the lines. \param most Chi-square: where no place can have less,
+  //! the grid is not narrowed down any more.
+  static Moments about(const Lines &lines, const Eigen::Vector3d &start, bool freeDuty, double inflation,
+                       double most = std::numeric_limits<double>::infinity());
 
 private:
   struct Range;
@@ -57,7 +60,8 @@ private:
   vpPulsePosterior(const Lines &lines, const Eigen::Vector3d &start);
   void evaluate(const Range &range);
   double changeBetween(const Range &range) const;
-  Places likely(const Range &range, double reach, double inflation) const;
+  Places likely(const Range &range, double limit) const;
+  Moments moments(const Range &range, double limit, double inflation) const;
   void tabulate(const Range &range, double length);
   void addPulses(const Range &range, double ofFrequency);
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -127,7 +128,8 @@ private:
   Posterior posterior();
   Posterior sliced(const Posterior &bell);
   Posterior onGrid(const Posterior &bell);
-  vpPulsePosterior::Moments momentsWith(double exposed) const;
+  vpPulsePosterior::Moments momentsWith(double exposed,
+                                        double most = std::numeric_limits<double>::infinity()) const;
   bool goOnFrom(const vpPulsePosterior::Moments &moments);
   Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);
   double slice(const Vector &axis, double width, double level, Vector &x, double &here, Uniform &uniform);

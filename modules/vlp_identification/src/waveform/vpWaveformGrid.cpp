@@ -10,10 +10,14 @@
 
 BEGIN_VISP_NAMESPACE
 
+namespace
+{
+const double deeper = 0.8; // chi-square of another minimum, as a share of that at hand
+}
+
 //! Descends from there where that is far below the minimum at m_x. \return Whether it is another minimum.
 bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
 {
-  static const double deeper = 0.8;
   if (!(moments.chiSquare < deeper * m_chiSquare)) {
     return false;
   }
@@ -33,7 +37,7 @@ bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
 void vpWaveformFit::leaveGap()
 {
   if (leavesGaps()) {
-    goOnFrom(momentsWith(m_x(exposure)));
+    goOnFrom(momentsWith(m_x(exposure), deeper * m_chiSquare));
   }
 }
 
@@ -87,8 +91,9 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
   return {all.mean(), all.covariance() + within / sum};
 }
 
-//! Frequency, phase and duty about m_x, were that the exposure, s.
-vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed) const
+//! Frequency, phase and duty about m_x, were that the exposure, s. \param most As of
+//! vpPulsePosterior::about().
+vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed, double most) const
 {
   vpPulsePosterior::Lines lines;
   lines.time = m_time.cast<float>();
@@ -102,7 +107,7 @@ vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed) const
   lines.darkness = m_darkness;
   lines.step = m_line;
   lines.exposure = exposed;
-  return vpPulsePosterior::about(lines, m_x.head<3>(), m_freeDuty, m_inflation);
+  return vpPulsePosterior::about(lines, m_x.head<3>(), m_freeDuty, m_inflation, most);
 }
 
 END_VISP_NAMESPACE
