@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 BEGIN_VISP_NAMESPACE
@@ -134,7 +135,7 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse()
       }
     }
     if (found) {
-      found->leaveGap();
+      found->leaveGap(best ? best->cost() : std::numeric_limits<double>::infinity());
       keepBetter(best, std::move(*found));
     }
   }

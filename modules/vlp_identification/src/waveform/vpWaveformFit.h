@@ -69,8 +69,8 @@ public:
   bool preferStatedExposure();
 
   //! Where the lines leave gaps, an edge that no line sees leads no descent out of its gap: goes on from the
-  //! likeliest places about the minimum.
-  void leaveGap();
+  //! likeliest places about the minimum. \param most Chi-square that is good enough for it.
+  void leaveGap(double most = std::numeric_limits<double>::infinity());
 
   //! Turns values and standard deviations into those of the posterior about the minimum that run() found.
   void integrate();

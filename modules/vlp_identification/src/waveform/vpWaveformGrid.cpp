@@ -34,10 +34,10 @@ bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
   return false;
 }
 
-void vpWaveformFit::leaveGap()
+void vpWaveformFit::leaveGap(double most)
 {
   if (leavesGaps()) {
-    goOnFrom(momentsWith(m_x(exposure), deeper * m_chiSquare));
+    goOnFrom(momentsWith(m_x(exposure), std::min(most, deeper * m_chiSquare)));
   }
 }
 
