@@ -69,7 +69,7 @@ public:
   bool preferStatedExposure();
 
   //! Where the lines leave gaps, an edge that no line sees leads no descent out of its gap: goes on from the
-  //! likeliest places about the minimum. \param most Chi-square that is good enough for it.
+  //! likeliest places about the minimum. \param most Chi-square that such a place has to be below.
   void leaveGap(double most = std::numeric_limits<double>::infinity());
 
   //! Turns values and standard deviations into those of the posterior about the minimum that run() found.
