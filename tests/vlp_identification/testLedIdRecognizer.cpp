@@ -280,6 +280,19 @@ TEST(LedIdRecognizer, LampsInViewCalibrateTheRowTimeForEachOther)
   EXPECT_LT(error.sigma, 5e-4);
 }
 
+TEST(LedIdRecognizer, ALampFartherOffThanItSaysHardlyShiftsTheRowTime)
+{
+  const vpLampMap map{{lamp("A", 2000), lamp("B", 2500), lamp("C", 3100), lamp("D", 3700)}};
+  const double sigma = 0.7, off = 4 * sigma; // Hz
+  std::vector<vpLampObservation> seen{stripes(2000, sigma), stripes(2500 + off, sigma), stripes(3100, sigma),
+                                      stripes(3700, sigma)};
+  const vpRowTimeError error = vpLedIdRecognizer(map, shutter(0.01)).recognize(seen);
+  EXPECT_LT(std::abs(error.mean), 0.1 * off / 2500) << "a weighted mean shifts by 0.18 of it";
+  EXPECT_EQ(seen[0].id, "A");
+  EXPECT_EQ(seen[2].id, "C");
+  EXPECT_EQ(seen[3].id, "D");
+}
+
 TEST(LedIdRecognizer, AStrangerAmongLampsIsNoLampOfTheMap)
 {
   const vpLampMap map{{lamp("A", 2000), lamp("B", 2500), lamp("C", 3100)}};

@@ -32,6 +32,14 @@ double normalDensity(double z, double sigma)
   return std::exp(-0.5 * z * z) / (std::sqrt(2 * M_PI) * sigma);
 }
 
+//! Student's t of four degrees of freedom: of several estimates, one that is far off decides nothing for the
+//! others (Lange, Little and Taylor 1989).
+double heavyTailedDensity(double z, double sigma)
+{
+  const double q = 1 + 0.25 * z * z;
+  return 0.375 / (q * q * std::sqrt(q) * sigma);
+}
+
 bool sameKind(Signal signal, vpModulation::Kind kind)
 {
   return (signal == Signal::pwm && kind == vpModulation::Kind::pwm) ||
@@ -98,6 +106,9 @@ struct vpLedIdRecognizer::Candidate {
   double weight;    // prior probability, times the density of all features but the frequency
   bool fits;        // within the gates: of all features but the frequency, and of that once judged
   double probability = 0;
+
+  //! How far what was seen is off, in standard deviations.
+  double off(double rowTimeError) const { return (seen - frequency * (1 + rowTimeError)) / sigma; }
 };
 
 //! One lamp as the recogniser works on it.
@@ -107,17 +118,12 @@ struct vpLedIdRecognizer::Sight {
   std::vector<Candidate> candidates;
   bool misshapen = false; // not the shape of a lamp that might have blinked so
 
-  double density(const Candidate &candidate, double rowTimeError) const
-  {
-    return normalDensity((candidate.seen - candidate.frequency * (1 + rowTimeError)) / candidate.sigma,
-                         candidate.sigma);
-  }
-  //! Of what was seen, whichever lamp it is.
+  //! Of what was seen, whichever lamp it is, for the lamps beside it.
   double evidence(double rowTimeError) const
   {
     double sum = unknown;
     for (const Candidate &candidate : candidates) {
-      sum += candidate.weight * density(candidate, rowTimeError);
+      sum += candidate.weight * heavyTailedDensity(candidate.off(rowTimeError), candidate.sigma);
     }
     return sum;
   }
@@ -140,7 +146,8 @@ void vpLedIdRecognizer::Sight::judge(const std::vector<double> &errors, const st
     candidate.fits = candidate.fits && least < 1;
     candidate.probability = 0;
     for (size_t k = 0; k < errors.size(); ++k) {
-      candidate.probability += weights[k] * candidate.weight * density(candidate, errors[k]);
+      candidate.probability +=
+          weights[k] * candidate.weight * normalDensity(candidate.off(errors[k]), candidate.sigma);
     }
     sum += candidate.probability; // of what does not fit, too: it may be less unlikely than the rest
   }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 BEGIN_VISP_NAMESPACE
@@ -100,9 +99,13 @@ const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
   return *m_candidates;
 }
 
-std::optional<vpWaveformFit> vpPulseSearch::onePulse()
+std::optional<vpWaveformFit> vpPulseSearch::onePulse(double mostCriterion)
 {
   std::optional<vpWaveformFit> best;
+  const auto leaveGap = [&](vpWaveformFit &fit) {
+    const double most = mostCriterion - (fit.criterion() - fit.cost());
+    fit.leaveGap(best ? std::min(most, best->cost()) : most);
+  };
   if (m_pulses) {
     const vpStripeStarts::Pulses &pulses = *m_pulses;
     for (double exposure : exposuresOf(*m_profile, pulses.frequency)) {
@@ -110,7 +113,7 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse()
       if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
           fit.preferStatedExposure()) {
         if (fit.misfit() > allExplained) {
-          fit.leaveGap();
+          leaveGap(fit);
         }
         if (fit.misfit() < allExplained && asStated(fit, *m_profile)) {
           return fit;
@@ -122,22 +125,28 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse()
   if (m_byPulses || (best && best->misfit() < allExplained)) {
     return best;
   }
+  std::vector<vpWaveformFit> found; // the best about each candidate
   for (const vpStripeStarts::Sinusoid &candidate : candidates()) {
-    std::optional<vpWaveformFit> found;
+    std::optional<vpWaveformFit> here;
     for (double exposure : exposuresOf(*m_profile, candidate.frequency)) {
       for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
         vpWaveformFit fit(*m_profile, settings, m_envelope);
         // The first harmonic peaks in the middle of the pulse.
         if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure) &&
             fit.preferStatedExposure()) {
-          keepBetter(found, std::move(fit));
+          keepBetter(here, std::move(fit));
         }
       }
     }
-    if (found) {
-      found->leaveGap(best ? best->cost() : std::numeric_limits<double>::infinity());
-      keepBetter(best, std::move(*found));
+    if (here) {
+      found.push_back(std::move(*here));
     }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const vpWaveformFit &a, const vpWaveformFit &b) { return a.cost() < b.cost(); });
+  for (vpWaveformFit &fit : found) { // the best first, which leaves the others less to look for
+    leaveGap(fit);
+    keepBetter(best, std::move(fit));
   }
   return best;
 }

@@ -10,6 +10,8 @@
 #include <limits>
 #include <vector>
 
+#include <visp3/vlp_identification/vpLedIdPlanner.h>
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -57,8 +59,7 @@ double vpLongestLit(const vpStripeProfile &profile)
 
 double vpLongestPeriodLines(const vpLampMap &map, const vpVlpRig &rig)
 {
-  static const double slowest = 500; // Hz, of lamps that people may see (vpLedIdPlanner::flicker)
-  double longest = map.lamps.empty() ? never : 1 / slowest; // s
+  double longest = map.lamps.empty() ? never : 1 / vpLedIdPlanner::visibleFlicker; // s
   for (const vpLamp &lamp : map.lamps) {
     const double frequency = lamp.modulation.repetitionFrequency();
     longest = std::max(longest, frequency > 0 ? 1 / frequency : never);

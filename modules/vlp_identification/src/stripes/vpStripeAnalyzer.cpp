@@ -264,35 +264,31 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   vpPulseSearch *start = &byAll;
   std::optional<vpPulseSearch> evenly, byPeriod, byStripes;
   std::optional<vpWaveformFit> pwm = byAll.onePulse();
-  if (order > 0 && !isClipped(profile)) { // beyond the end of the grey scale nothing tells an even lamp
-    evenly = byAll.evenly(pwm && pwm->misfit() < vpPulseSearch::allExplained, *this);
-    std::optional<vpWaveformFit> other = evenly->onePulse();
+  const auto explained = [&pwm] { return pwm && pwm->misfit() < vpPulseSearch::allExplained; };
+  const auto alsoFrom = [&](vpPulseSearch &search) {
+    std::optional<vpWaveformFit> other =
+        search.onePulse(pwm ? pwm->criterion() : std::numeric_limits<double>::infinity());
     if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);
-      start = &*evenly;
+      start = &search;
     }
+  };
+  if (order > 0 && !isClipped(profile)) { // beyond the end of the grey scale nothing tells an even lamp
+    alsoFrom(evenly.emplace(byAll.evenly(explained(), *this)));
   }
-  if ((!pwm || pwm->misfit() > vpPulseSearch::allExplained) && !byAll.candidates().empty()) {
+  if (!explained() && !byAll.candidates().empty()) {
     // An emitter of any pattern is as bright as the brightest that a period shows.
     const double frequency = byAll.candidates().front().frequency,
                  periods = frequency * std::abs(profile.time.back() - profile.time.front());
     byPeriod.emplace(profile, vpStripeStarts::envelopeOfPeriod(profile, frequency),
                      std::clamp(static_cast<int>(periods) - 1, order, uneven), *this);
     byPeriod->settings.envelopeUnknowns = static_cast<int>(periods);
-    std::optional<vpWaveformFit> other = byPeriod->onePulse();
-    if (other && (!pwm || other->criterion() < pwm->criterion())) {
-      pwm = std::move(other);
-      start = &*byPeriod;
-    }
+    alsoFrom(*byPeriod);
   }
-  if ((!pwm || pwm->misfit() > vpPulseSearch::allExplained) && peaks.size() > 1) {
+  if (!explained() && peaks.size() > 1) {
     byStripes.emplace(profile, vpStripeStarts::envelopeOfStripes(profile, peaks), 0, *this);
     byStripes->settings.envelopeUnknowns = 2 * static_cast<int>(peaks.size());
-    std::optional<vpWaveformFit> other = byStripes->onePulse();
-    if (other && (!pwm || other->criterion() < pwm->criterion())) {
-      pwm = std::move(other);
-      start = &*byStripes;
-    }
+    alsoFrom(*byStripes);
   }
   if (pwm && pwm->misfit() > vpPulseSearch::allExplained &&
       showsSharpening(profile, pwm->value(vpWaveformFit::frequency))) {

@@ -101,7 +101,8 @@ public:
   //! the fold.
   double highestFrequency = std::numeric_limits<double>::quiet_NaN();
   double leastStripes = 3;
-  double flicker = 500; // Hz, above which people see no flicker, even where eye or lamp moves
+  static constexpr double visibleFlicker = 500; // Hz, up to which people may see it, where eye or lamp moves
+  double flicker = visibleFlicker;
   double leastContrast = 0.2;
   double foldShare = 0.9;
   double frequencyStep =

@@ -29,9 +29,10 @@ struct VISP_EXPORT vpRowTimeError {
 
   Frequencies are measured in row times, whose relative error is common to all lamps in view. With it as d,
   lamp a of frequency f_a is seen at f_a (1 + d) + e, e being the estimate's own error and the oscillator's.
-  The frame's evidence about d is p(d) times the product over its lamps of sum_a p(a) N(f - f_a (1 + d); e);
+  The frame's evidence about d is p(d) times the product over its lamps of sum_a p(a) t(f - f_a (1 + d); e);
   each lamp is judged by the posterior of d given all others, integrated on a grid. So two lamps of a rig
-  whose row time is known to 1 % calibrate it for each other.
+  whose row time is known to 1 % calibrate it for each other. t is Student's distribution of four degrees of
+  freedom (Lange, Little and Taylor 1989): one estimate that is farther off than it says decides nothing.
 
   An identifier that lies within `gate` standard deviations in frequency, and `shapeGate` in duty and phase
   difference, is a candidate. Near simple fractions of the rate of lines all edges may fall between exposures:
