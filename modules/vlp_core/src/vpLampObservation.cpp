@@ -21,6 +21,16 @@ namespace
 {
 constexpr int outlineSamples = 32;
 
+std::array<Eigen::Vector2d, outlineSamples> unitCircle()
+{
+  std::array<Eigen::Vector2d, outlineSamples> points;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double t = 2 * M_PI * static_cast<double>(i) / outlineSamples;
+    points[i] = {std::cos(t), std::sin(t)};
+  }
+  return points;
+}
+
 Eigen::Vector2d normalised(const vpCameraParameters &camera, const Eigen::Vector2d &pixel)
 {
   Eigen::Vector2d point;
@@ -140,21 +150,32 @@ Eigen::Vector4d vpLampOutline::box() const
   return {least.x(), least.y(), most.x(), most.y()};
 }
 
-bool vpLampOutline::stretch(double v, double &first, double &last) const
+vpOutlineLines::vpOutlineLines(const vpLampOutline &outline) : m_outline(outline)
 {
-  if (shape == Shape::ellipse) {
+  if (outline.shape == vpLampOutline::Shape::ellipse) {
     // |D R^T (x - centre)| = 1 with x = (u, v): a quadratic in u - centre.
-    const double c = std::cos(angle), s = std::sin(angle), below = v - centre.y();
-    const Eigen::Vector2d p(c / a, -s / b), q(below * s / a, below * c / b);
-    const double square = p.squaredNorm(), product = p.dot(q),
-                 discriminant = product * product - square * (q.squaredNorm() - 1);
-    if (!(discriminant > 0)) {
+    const double c = std::cos(outline.angle), s = std::sin(outline.angle);
+    const Eigen::Vector2d p(c / outline.a, -s / outline.b), q(s / outline.a, c / outline.b);
+    const double square = p.squaredNorm(), product = p.dot(q);
+    m_slope = -product / square;
+    m_square = 1 / square;
+    m_loss = (square * q.squaredNorm() - product * product) / (square * square);
+  }
+}
+
+bool vpOutlineLines::stretch(double v, double &first, double &last) const
+{
+  if (m_outline.shape == vpLampOutline::Shape::ellipse) {
+    const double below = v - m_outline.centre.y(), square = m_square - m_loss * below * below;
+    if (!(square > 0)) {
       return false;
     }
-    first = centre.x() + (-product - std::sqrt(discriminant)) / square;
-    last = centre.x() + (-product + std::sqrt(discriminant)) / square;
+    const double middle = m_outline.centre.x() + m_slope * below, half = std::sqrt(square);
+    first = middle - half;
+    last = middle + half;
     return true;
   }
+  const std::array<Eigen::Vector2d, 4> &corners = m_outline.corners;
   first = std::numeric_limits<double>::infinity();
   last = -first;
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -183,11 +204,11 @@ Eigen::Vector2d vpLampOutline::middle(const vpCameraParameters &camera, const Ei
   }
   const Eigen::Vector2d major = a * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   const Eigen::Vector2d minor = b * Eigen::Vector2d(-std::sin(angle), std::cos(angle));
+  static const std::array<Eigen::Vector2d, outlineSamples> circle = unitCircle();
   std::array<Eigen::Vector2d, outlineSamples> points;
-  for (int i = 0; i < outlineSamples; ++i) {
-    const double t = 2 * M_PI * i / outlineSamples;
-    points[static_cast<size_t>(i)] = normalised(camera, centre + std::cos(t) * major + std::sin(t) * minor);
-  }
+  std::transform(circle.begin(), circle.end(), points.begin(), [&](const Eigen::Vector2d &at) {
+    return normalised(camera, centre + at.x() * major + at.y() * minor);
+  });
 
   // The vanishing line of the lamp's plane is the plane's normal itself: n . (x, y, 1) = 0.
   if (!poleInside(points, cNormal.normalized(), point)) {

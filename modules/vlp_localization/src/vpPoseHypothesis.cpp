@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 
 #include "vpLampPicture.h"
+#include "vpVlpFilterParts.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -190,9 +191,10 @@ void vpPoseHypothesis::correct(const vpLampFrame &frame, double least, Pass &pas
       const vpFrameLamp &lamp = frame.lamps[k];
       pass.filter.advance(lamp.time);
       vpLampSight sight = lamp.sight;
-      pass.verdicts[k] = judge(frame, k, strangers && accepted >= poseLamps, sight, pass.filter);
+      const vpVlpFilter::Predicted predicted = pass.filter.predict(sight);
+      pass.verdicts[k] = judge(frame, k, strangers && accepted >= poseLamps, sight, pass.filter, predicted);
       if (pass.verdicts[k].accepted) {
-        pass.filter.update(sight);
+        pass.filter.update(sight, predicted);
         ++accepted;
       }
       pass.logLikelihood += pass.verdicts[k].logLikelihood;
@@ -208,14 +210,15 @@ void vpPoseHypothesis::correct(const vpLampFrame &frame, double least, Pass &pas
 //! \param told Other lamps have shown where the robot is. \param sight Becomes as uncertain as what the lamp
 //! may be off by makes it.
 vpPoseHypothesis::Verdict vpPoseHypothesis::judge(const vpLampFrame &frame, size_t which, bool told,
-                                                  vpLampSight &sight, const vpVlpFilter &filter) const
+                                                  vpLampSight &sight, const vpVlpFilter &filter,
+                                                  const vpVlpFilter::Predicted &predicted) const
 {
   const vpLamp &lamp = *frame.lamps[which].lamp;
   Verdict verdict;
   verdict.wasStranger = m_strangers[which];
   const Eigen::Vector2d offset = history.offset(lamp);
   sight.covariance += offset * offset.transpose();
-  verdict.innovation = filter.innovation(sight);
+  verdict.innovation = filter.innovation(sight, predicted);
   const vpVlpFilter::Innovation &seen = verdict.innovation;
   const double stranger = verdict.wasStranger ? m_hypotheses.staying : m_hypotheses.stranger,
                other = std::log(stranger) + frame.logUniform;

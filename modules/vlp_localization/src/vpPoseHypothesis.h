@@ -79,7 +79,7 @@ private:
   void correct(const vpLampFrame &frame, double least, Pass &pass) const;
   void attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least, Pass &pass);
   Verdict judge(const vpLampFrame &frame, size_t which, bool told, vpLampSight &sight,
-                const vpVlpFilter &filter) const;
+                const vpVlpFilter &filter, const vpVlpFilter::Predicted &predicted) const;
   double weigh(const vpLampFrame &frame, double dt);
   size_t mix(vpVlpFilter &mixed, size_t first, size_t end) const;
   void compare(const vpLampFrame &frame);

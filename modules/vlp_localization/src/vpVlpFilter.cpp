@@ -14,7 +14,7 @@
 #include <visp3/core/vpMath.h>
 
 #include "vpCovarianceColumns.h"
-#include "vpLampGeometry.h"
+#include "vpVlpFilterParts.h"
 
 BEGIN_VISP_NAMESPACE
 
@@ -22,46 +22,25 @@ namespace
 {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-//! Where the base stands that leans by roll and pitch and heads along yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
-vpBasePose baseOf(const Vector6d &state)
-{
+//! A base that leans by roll and pitch and heads along yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
+struct Base {
+  explicit Base(const Vector6d &state)
+  {
+    const double cy = std::cos(state(3)), sy = std::sin(state(3)), cr = std::cos(state(4)),
+                 sr = std::sin(state(4)), cp = std::cos(state(5)), sp = std::sin(state(5));
+    heading << cy, -sy, 0, sy, cy, 0, 0, 0, 1;
+    pose.wtb = state.head<3>();
+    pose.wRb << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, //
+        sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,         //
+        -sp, cp * sr, cp * cr;
+    byAngles << 0, cy * cp, -sy, 0, sy * cp, cy, 1, -sp, 0;
+  }
+
   vpBasePose pose;
-  pose.wtb = state.head<3>();
-  pose.wRb = (Eigen::AngleAxisd(state(3), Eigen::Vector3d::UnitZ()) *
-              Eigen::AngleAxisd(state(5), Eigen::Vector3d::UnitY()) *
-              Eigen::AngleAxisd(state(4), Eigen::Vector3d::UnitX()))
-                 .toRotationMatrix();
-  return pose;
-}
-
-//! From a base that stands level to the camera, in w, m.
-Eigen::Vector3d levelArm(const Vector6d &state, const Eigen::Vector3d &btc)
-{
-  return Eigen::AngleAxisd(state(3), Eigen::Vector3d::UnitZ()) * btc;
-}
-
-//! Rotations about the fixed axes of w by changes of yaw, roll and pitch, in the state's order.
-Eigen::Matrix3d rotationByAngles(const Vector6d &state)
-{
-  const Eigen::AngleAxisd heading(state(3), Eigen::Vector3d::UnitZ()),
-      leaning(state(5), Eigen::Vector3d::UnitY());
-  Eigen::Matrix3d axes;
-  axes.col(0) = Eigen::Vector3d::UnitZ();
-  axes.col(1) = heading * (leaning * Eigen::Vector3d::UnitX());
-  axes.col(2) = heading * Eigen::Vector3d::UnitY();
-  return axes;
-}
-} // namespace
-
-//! A lamp's ray and its derivative by the state.
-struct vpVlpFilter::Predicted {
-  bool inFront = false;
-  double depth = 0;
-  Eigen::Vector2d ray = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d byPlace; // of ray by x and y of the lamp
-  Derivative<2> H;
-  Eigen::Matrix2d ownCovariance = Eigen::Matrix2d::Zero(); // of a lamp whose error is no state yet
+  Eigen::Matrix3d heading;  // were it level
+  Eigen::Matrix3d byAngles; // rotations about the fixed axes of w by changes of yaw, roll and pitch
 };
+} // namespace
 
 double vpVlpFilter::Innovation::distance(double tolerance) const
 {
@@ -69,7 +48,7 @@ double vpVlpFilter::Innovation::distance(double tolerance) const
   return ray.dot(S.inverse() * ray);
 }
 
-vpVlpFilter::vpVlpFilter(const vpVlpRig &rig) : m_rig(rig) {}
+vpVlpFilter::vpVlpFilter(const vpVlpRig &rig) : m_given(std::make_shared<Given>(rig)) {}
 
 void vpVlpFilter::mark(double time)
 {
@@ -111,36 +90,32 @@ void vpVlpFilter::expect(const vpLampSight &lamp)
   m_lamps.push_back(lamp.id);
 }
 
+//! The errors of mount, lens and lamps are 0, as they are considered, not estimated.
 vpVlpFilter::Predicted vpVlpFilter::predict(const vpLampSight &lamp) const
 {
-  const Vector6d base = m_x.head<6>();
-  vpBasePose pose = baseOf(base);
-  vpMountFrame frame(m_rig);
-  frame.btc += m_x.segment<3>(mount);
-  frame.bRc = Eigen::AngleAxisd(m_x(mount + 3), Eigen::Vector3d::UnitZ()) * frame.bRc;
-  const Eigen::Index own = lampIndex(lamp);
-  const Eigen::Vector3d place = own < 0 ? lamp.position : lamp.position + m_x.segment<3>(own);
+  const Base base(m_x.head<6>());
+  const vpMountFrame &frame = m_given->mount;
+  vpBasePose pose = base.pose;
   const Eigen::Vector3d rigidArm = pose.wRb * frame.btc,
-                        arm = freeAttitude ? rigidArm : levelArm(base, frame.btc);
+                        arm = freeAttitude ? rigidArm : base.heading * frame.btc;
   pose.wtb += arm - rigidArm;
-  const vpPredictedRay ray = predictRay(place, pose, frame);
+  const vpPredictedRay ray = predictRay(lamp.position, pose, frame);
   Predicted predicted;
   predicted.inFront = ray.inFront;
   if (!ray.inFront) {
     return predicted;
   }
-  const Eigen::Vector3d camera = pose.wtb + rigidArm;
-  predicted.depth = (pose.wRb * frame.bRc).col(2).dot(place - camera);
-  predicted.ray = (1 + m_x(lens + 2)) * ray.ray + m_x.segment<2>(lens);
+  const Eigen::Index own = lampIndex(lamp);
+  predicted.depth = (pose.wRb * frame.bRc.col(2)).dot(lamp.position - pose.wtb - rigidArm);
+  predicted.ray = ray.ray;
   const Eigen::Matrix<double, 2, 3> byPlace = ray.derivative.leftCols<3>(),
                                     byTurn = ray.derivative.rightCols<3>();
   predicted.byPlace = -byPlace.leftCols<2>();
-  const Eigen::Matrix3d byAngles = rotationByAngles(base);
-  Eigen::Matrix<double, 2, 3> byAngle = byTurn * byAngles;
+  Eigen::Matrix<double, 2, 3> byAngle = byTurn * base.byAngles;
   if (!freeAttitude) { // yaw carries the camera along on its level arm, roll and pitch leave it where it is
     const Eigen::Vector3d arms[] = {arm - rigidArm, -rigidArm, -rigidArm};
     for (int k = 0; k < 3; ++k) {
-      byAngle.col(k) += byPlace * byAngles.col(k).cross(arms[k]);
+      byAngle.col(k) += byPlace * base.byAngles.col(k).cross(arms[k]);
     }
   }
   const Eigen::Matrix<double, 2, 3> byMount = byPlace * pose.wRb;
@@ -223,7 +198,11 @@ void vpVlpFilter::update(const vpLampSight &lamp)
     return;
   }
   expect(lamp);
-  const Predicted predicted = predict(lamp);
+  update(lamp, predict(lamp));
+}
+
+void vpVlpFilter::update(const vpLampSight &lamp, const Predicted &predicted)
+{
   if (predicted.inFront) {
     const Innovation seen = innovation(lamp, predicted);
     weighNoise(seen, lamp.covariance);
@@ -237,8 +216,8 @@ void vpVlpFilter::update(const vpLampSight &lamp)
     m_information += byPose * lamp.covariance.inverse() * byPose.transpose();
     ++m_sights;
     m_imageSpeed =
-        std::max(m_imageSpeed, m_rig.camera.get_px() * (m_x.segment<2>(vx).norm() / predicted.depth +
-                                                        std::abs(m_x(w)) * predicted.ray.norm()));
+        std::max(m_imageSpeed, m_given->rig.camera.get_px() * (m_x.segment<2>(vx).norm() / predicted.depth +
+                                                               std::abs(m_x(w)) * predicted.ray.norm()));
     measure<2>(predicted.H, seen.ray, m_noise * lamp.covariance);
   }
 }
@@ -324,26 +303,23 @@ template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector
 //! The pose in the state from there on.
 vpVlpFilter::Pose vpVlpFilter::poseOf(Index first) const
 {
-  const Vector6d state = m_x.segment<6>(first);
-  const vpBasePose base = baseOf(state);
-  const vpMountFrame frame(m_rig);
+  const Base base(m_x.segment<6>(first));
   Pose pose;
-  pose.wMb.linear() = base.wRb;
-  pose.wMb.translation() = base.wtb;
+  pose.wMb.linear() = base.pose.wRb;
+  pose.wMb.translation() = base.pose.wtb;
   pose.wMb.makeAffine();
-  pose.wtc = base.wtb + (freeAttitude ? Eigen::Vector3d(base.wRb * frame.btc) : levelArm(state, frame.btc));
-  const Eigen::Matrix3d byAngles = rotationByAngles(state);
+  pose.wtc = base.pose.wtb + (freeAttitude ? base.pose.wRb : base.heading) * m_given->mount.btc;
   pose.covariance = m_P.block<6, 6>(first, first);
   pose.covariance.topLeftCorner<4, 4>() += m_common;
-  pose.covariance.bottomRows<3>() = byAngles * pose.covariance.bottomRows<3>();
-  pose.covariance.rightCols<3>() *= byAngles.transpose();
+  pose.covariance.bottomRows<3>() = base.byAngles * pose.covariance.bottomRows<3>();
+  pose.covariance.rightCols<3>() *= base.byAngles.transpose();
   return pose;
 }
 
 void vpVlpFilter::tell(Index first, vpVlpFix &fix) const
 {
   const Pose pose = poseOf(first);
-  const Eigen::Matrix3d wRc = pose.wMb.linear() * vpMountFrame(m_rig).bRc;
+  const Eigen::Matrix3d wRc = pose.wMb.linear() * m_given->mount.bRc;
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
       fix.wMb[i][k] = pose.wMb(i, k);

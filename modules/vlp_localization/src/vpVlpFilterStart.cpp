@@ -12,13 +12,14 @@
 #include <Eigen/Geometry>
 #include <visp3/core/vpMath.h>
 
-#include "vpLampGeometry.h"
+#include "vpVlpFilterParts.h"
 
 BEGIN_VISP_NAMESPACE
 
 void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
 {
   const vpBasePose pose = vpBasePose::of(wMb);
+  const vpVlpRig &rig = m_given->rig;
   m_started = true;
   m_time = time;
   m_lamps.clear();
@@ -33,41 +34,38 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   sigma.segment<2>(roll) =
       freeAttitude
           ? Eigen::Vector2d(startTurn, startTurn)
-          : Eigen::Vector2d(m_rig.rotationSigma.head<2>().array().square() + vpMath::sqr(m_extraTiltSigma))
+          : Eigen::Vector2d(rig.rotationSigma.head<2>().array().square() + vpMath::sqr(m_extraTiltSigma))
                 .cwiseSqrt()
                 .eval();
   sigma(speedScale) = odometryScale;
   sigma(turnScale) = odometryTurnScale;
   sigma(turnBias) = odometryTurnBias;
   sigma(wheels) = odometryHeading;
-  sigma.segment<3>(mount) = m_rig.translationSigma;
-  sigma(mount + 3) = m_rig.rotationSigma.z();
-  const bool exact =
-      m_extraTiltSigma == 0 && m_rig.rotationSigma.isZero(0) && m_rig.translationSigma.isZero(0);
-  const double point = m_rig.principalPointSigma ? *m_rig.principalPointSigma / m_rig.camera.get_px()
-                                                 : (exact ? 0 : principalPoint);
-  sigma.segment<3>(lens) << point, point, m_rig.focalLengthSigma.value_or(exact ? 0 : focalLength);
+  sigma.segment<3>(mount) = rig.translationSigma;
+  sigma(mount + 3) = rig.rotationSigma.z();
+  const bool exact = m_extraTiltSigma == 0 && rig.rotationSigma.isZero(0) && rig.translationSigma.isZero(0);
+  const double point =
+      rig.principalPointSigma ? *rig.principalPointSigma / rig.camera.get_px() : (exact ? 0 : principalPoint);
+  sigma.segment<3>(lens) << point, point, rig.focalLengthSigma.value_or(exact ? 0 : focalLength);
   sigma.segment<3>(vx) << startVelocity, startVelocity, startTurnRate;
   m_P.setZero(lamps, lamps);
   m_P.diagonal() = sigma.cwiseAbs2();
   m_aside = false;
   m_common.setZero();
-  m_startX = m_x;
-  m_startP = m_P;
   while (m_odometry.size() > 1 && m_odometry[1].timestamp <= m_time) {
     m_odometry.erase(m_odometry.begin());
   }
-  m_startOdometry = m_odometry;
+  m_start = std::make_shared<Start>(Start{m_x, m_P, m_odometry});
 }
 
 void vpVlpFilter::startAgain(bool odometryToo)
 {
   Eigen::Matrix<double, 9, 1> path;
   path << m_x.segment<6>(mark0), m_x.segment<3>(vx);
-  m_x = m_startX;
-  m_P = m_startP;
+  m_x = m_start->x;
+  m_P = m_start->P;
   if (odometryToo) {
-    m_odometry = m_startOdometry;
+    m_odometry = m_start->odometry;
     m_followed = -1e300;
   }
   m_lamps.clear();
@@ -148,8 +146,7 @@ void vpVlpFilter::comeFrom(const vpVlpFix &before, double since)
   setVelocity(vx, mean.x(), place, acceleration, startVelocity);
   setVelocity(vy, mean.y(), place, acceleration, startVelocity);
   setVelocity(w, turned / since, turn, turnAcceleration, startTurnRate);
-  m_startX = m_x;
-  m_startP = m_P;
+  m_start = std::make_shared<Start>(Start{m_x, m_P, m_start->odometry});
 }
 
 void vpVlpFilter::widenClaims()

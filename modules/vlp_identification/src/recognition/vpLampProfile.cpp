@@ -41,9 +41,10 @@ double backgroundOf(const cv::Mat_<unsigned char> &lines, const vpLampOutline &o
 {
   static const int stretch = 5; // samples
   std::vector<double> beside;
+  const vpOutlineLines across(outline);
   for (int line = box.y; line < box.br().y; ++line) {
     double first, last;
-    if (!outline.stretch(line, first, last)) {
+    if (!across.stretch(line, first, last)) {
       continue;
     }
     for (const double from : {std::floor(first - gap) - stretch + 1, std::ceil(last + gap)}) {

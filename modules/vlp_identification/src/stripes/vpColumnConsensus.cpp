@@ -259,10 +259,11 @@ Strips stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const
   static const size_t few = 20;
   Strips strips{Eigen::ArrayXXd(box.width / width, box.height),
                 Eigen::ArrayXXd(box.width / width, box.height)};
+  const vpOutlineLines across(outline);
   for (int i = 0; i < box.height; ++i) {
     const int line = box.y + i;
     double from = box.x, to = box.br().x;
-    if (outline.shape != vpLampOutline::Shape::region && !outline.stretch(line, from, to)) {
+    if (outline.shape != vpLampOutline::Shape::region && !across.stretch(line, from, to)) {
       from = to = box.x;
     }
     for (int k = 0, first = box.x; k < strips.light.rows(); ++k, first += width) {

@@ -42,9 +42,10 @@ void vpLampReacquisition::readProfile(const vpLinePicture &picture, const vpLine
   m_profile.logExposureSigma = timing.logExposureSigma();
   double brightest = 0;
   m_lengths.clear();
+  const vpOutlineLines across(outline);
   for (int line = static_cast<int>(std::ceil(box(1) + margin)); line <= box(3) - margin; ++line) {
     double first, last;
-    if (!outline.stretch(line, first, last)) {
+    if (!across.stretch(line, first, last)) {
       continue;
     }
     const double cut = 0.5 * (1 - inside) * (last - first);

@@ -135,9 +135,10 @@ std::vector<Chord> chordsOf(const cv::Mat_<unsigned char> &lines, const vpOutlin
   const double bottom =
       ellipse ? std::min(lines.rows - 1.0, box(3)) : std::min(roi.box.br().y - 1 - margin, box(3));
   const double centre = 0.5 * (box(1) + box(3)), inside = 1 - 2 * margin / (box(3) - box(1));
+  const vpOutlineLines across(outline);
   for (int line = static_cast<int>(std::ceil(top)); inside > 0 && line <= bottom; ++line) {
     double first, last;
-    if (outline.stretch(centre + (line - centre) / inside, first, last)) {
+    if (across.stretch(centre + (line - centre) / inside, first, last)) {
       add(line, first, last, soft ? middle : inside);
     }
   }

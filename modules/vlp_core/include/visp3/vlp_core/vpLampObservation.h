@@ -41,8 +41,6 @@ struct VISP_EXPORT vpLampOutline {
   double diameter() const;
   //! Bounding box: left, top, right, bottom, pixels.
   Eigen::Vector4d box() const;
-  //! The part of the line v = \e v that lies inside, from \e first to \e last, px. False: none.
-  bool stretch(double v, double &first, double &last) const;
 
   /*!
     Projection of the lamp's middle, in pixels. For an ellipse its own middle is not that point: the lamp's
@@ -53,6 +51,21 @@ struct VISP_EXPORT vpLampOutline {
     inverses of each other). A region, a plane seen edge-on and a degenerate outline give the centre.
   */
   Eigen::Vector2d middle(const vpCameraParameters &camera, const Eigen::Vector3d &cNormal) const;
+};
+
+//! What of each line of the picture lies inside an outline, which has to outlast it.
+class VISP_EXPORT vpOutlineLines
+{
+public:
+  explicit vpOutlineLines(const vpLampOutline &outline);
+  //! The part of the line v = \e v that lies inside, from \e first to \e last, px. False: none.
+  bool stretch(double v, double &first, double &last) const;
+
+private:
+  const vpLampOutline &m_outline;
+  // Of an ellipse: how far the stretch's middle moves from line to line, and the square of its half length on
+  // the line of the centre, and what it loses with the square of the distance from there.
+  double m_slope = 0, m_square = 0, m_loss = 0;
 };
 
 //! A lamp's frequency under the assumption of one duty.

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -147,6 +148,12 @@ public:
   //! Corrects the state, its covariance in Joseph's form. \e lamp at time().
   void update(const vpLampSight &lamp);
 
+  //! What both have in common, for who asks the one before the other: where a lamp is expected, once started.
+  struct Predicted;
+  Predicted predict(const vpLampSight &lamp) const;
+  Innovation innovation(const vpLampSight &lamp, const Predicted &predicted) const;
+  void update(const vpLampSight &lamp, const Predicted &predicted);
+
   /*!
     Mean and covariance of a mixture. \param parts Copies of one filter that went on under different
     hypotheses up to the same time, this one among them or not. \param weights Of each; their sum is 1.
@@ -254,14 +261,11 @@ private:
     }
     return sum;
   }
-  struct Predicted;
-  Predicted predict(const vpLampSight &lamp) const;
   Eigen::Index lampIndex(const vpLampSight &lamp) const;
   double placeSigma(const vpLampSight &lamp) const
   {
     return std::hypot(lamp.positionSigma, m_extraPlaceSigma);
   }
-  Innovation innovation(const vpLampSight &lamp, const Predicted &predicted) const;
   //! \param stated The covariance that the lamp's ray came with.
   void weighNoise(const Innovation &seen, const Eigen::Matrix2d &stated);
   Pose poseOf(Index first) const;
@@ -280,7 +284,10 @@ private:
   void wander(double time);
   void useOdometry(const vpOdometry &before, const vpOdometry &sample);
 
-  vpVlpRig m_rig;
+  struct Given; // the rig
+  struct Start;
+  std::shared_ptr<const Given> m_given; // of all copies
+  std::shared_ptr<const Start> m_start; // state, covariance and odometry at the start
   bool m_started = false;
   double m_time = 0;     // s
   double m_markTime = 0; // s
@@ -288,11 +295,8 @@ private:
   Matrix m_P;
   Vector m_offset;                                    // of the estimate from m_x,
   bool m_aside = false;                               // where it is not m_x: see linearizeAbout()
-  Vector m_startX;                                    // m_x,
-  Matrix m_startP;                                    // and m_P, at the start
   std::vector<std::string> m_lamps;                   // ids whose errors are states, in their order
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_PH, m_K; // of measure(): kept, so that it takes no memory
-  std::vector<vpOdometry> m_startOdometry;            // m_odometry at the start
   std::vector<vpOdometry> m_odometry; // not used up yet; the first one's time begins the next interval
   double m_extraTiltSigma = 0;        // rad, added to the rig's sigma of roll and pitch
   double m_extraPlaceSigma = 0;       // m, added to the map's sigma of its lamps
