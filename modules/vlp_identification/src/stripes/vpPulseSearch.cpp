@@ -99,13 +99,9 @@ const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
   return *m_candidates;
 }
 
-std::optional<vpWaveformFit> vpPulseSearch::onePulse(double mostCriterion)
+std::optional<vpWaveformFit> vpPulseSearch::onePulse()
 {
   std::optional<vpWaveformFit> best;
-  const auto leaveGap = [&](vpWaveformFit &fit) {
-    const double most = mostCriterion - (fit.criterion() - fit.cost());
-    fit.leaveGap(best ? std::min(most, best->cost()) : most);
-  };
   if (m_pulses) {
     const vpStripeStarts::Pulses &pulses = *m_pulses;
     for (double exposure : exposuresOf(*m_profile, pulses.frequency)) {
@@ -113,7 +109,7 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse(double mostCriterion)
       if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
           fit.preferStatedExposure()) {
         if (fit.misfit() > allExplained) {
-          leaveGap(fit);
+          fit.leaveGap();
         }
         if (fit.misfit() < allExplained && asStated(fit, *m_profile)) {
           return fit;
@@ -125,28 +121,22 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse(double mostCriterion)
   if (m_byPulses || (best && best->misfit() < allExplained)) {
     return best;
   }
-  std::vector<vpWaveformFit> found; // the best about each candidate
   for (const vpStripeStarts::Sinusoid &candidate : candidates()) {
-    std::optional<vpWaveformFit> here;
+    std::optional<vpWaveformFit> found;
     for (double exposure : exposuresOf(*m_profile, candidate.frequency)) {
       for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
         vpWaveformFit fit(*m_profile, settings, m_envelope);
         // The first harmonic peaks in the middle of the pulse.
         if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure) &&
             fit.preferStatedExposure()) {
-          keepBetter(here, std::move(fit));
+          keepBetter(found, std::move(fit));
         }
       }
     }
-    if (here) {
-      found.push_back(std::move(*here));
+    if (found) {
+      found->leaveGap();
+      keepBetter(best, std::move(*found));
     }
-  }
-  std::sort(found.begin(), found.end(),
-            [](const vpWaveformFit &a, const vpWaveformFit &b) { return a.cost() < b.cost(); });
-  for (vpWaveformFit &fit : found) { // the best first, which leaves the others less to look for
-    leaveGap(fit);
-    keepBetter(best, std::move(fit));
   }
   return best;
 }

@@ -5,7 +5,6 @@
 #ifndef vpPulseSearch_h
 #define vpPulseSearch_h
 
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -48,8 +47,7 @@ public:
     return twoPulse ? vpStripeStarts::pairsOfPulses(m_edges).has_value() : m_pulses.has_value();
   }
 
-  //! \param mostCriterion That it has to be below to be of use.
-  std::optional<vpWaveformFit> onePulse(double mostCriterion = std::numeric_limits<double>::infinity());
+  std::optional<vpWaveformFit> onePulse();
   std::optional<vpWaveformFit> twoPulses();
 
 private:

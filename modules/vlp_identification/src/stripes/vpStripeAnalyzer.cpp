@@ -52,7 +52,7 @@ struct Stripes {
   {
   }
 
-  bool blink(const vpStripeProfile &profile, const vpStripeAnalyzer &analyzer)
+  bool blink(const vpStripeAnalyzer &analyzer)
   {
     return depth >= analyzer.minModulation && search.significant(analyzer.minSignificance);
   }
@@ -63,7 +63,7 @@ struct Stripes {
   {
     static const double fewest = 2;
     const double span = std::abs(profile.time.back() - profile.time.front());
-    return blink(profile, analyzer) && !search.candidates().empty() &&
+    return blink(analyzer) && !search.candidates().empty() &&
            search.candidates().front().frequency * span >= fewest;
   }
 };
@@ -237,7 +237,7 @@ bool vpStripeAnalyzer::blinks(const vpStripeProfile &profile) const
   }
   Stripes stripes(profile, *this);
   if (stripes.peaks.size() > 1 || !stripes.search.isOneStripe()) {
-    return stripes.blink(profile, *this);
+    return stripes.blink(*this);
   }
   const vpStripeProfile inside = insideOf(profile);
   return inside.light.size() >= fewestLines && Stripes(inside, *this).ripple(inside, *this);
@@ -255,7 +255,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   vpPulseSearch &byAll = stripes.search;
   features.stripes = static_cast<unsigned int>(peaks.size());
   features.modulation = stripes.depth;
-  if (profile.agreement < minAgreement || !stripes.blink(profile, *this)) {
+  if (profile.agreement < minAgreement || !stripes.blink(*this)) {
     return features;
   }
   features.misfit = 1; // where no pulses explain anything
@@ -266,8 +266,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   std::optional<vpWaveformFit> pwm = byAll.onePulse();
   const auto explained = [&pwm] { return pwm && pwm->misfit() < vpPulseSearch::allExplained; };
   const auto alsoFrom = [&](vpPulseSearch &search) {
-    std::optional<vpWaveformFit> other =
-        search.onePulse(pwm ? pwm->criterion() : std::numeric_limits<double>::infinity());
+    std::optional<vpWaveformFit> other = search.onePulse();
     if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);
       start = &search;

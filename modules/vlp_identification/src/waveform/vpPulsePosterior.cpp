@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "vpStripeLimits.h"
 
@@ -44,7 +43,16 @@ struct Axis {
 //! of all pulses, s; lengths are of a pulse, s.
 struct vpPulsePosterior::Range {
   Axis frequency, delay, length;
-  double half = 0; // s, of the profile
+
+  //! Pulses that are shorter than any are left out.
+  void cutAt(double shortest, double step)
+  {
+    if (length.count > 1 && length.middle - length.reach < shortest) {
+      const double longest = length.middle + length.reach;
+      length.middle = 0.5 * (shortest + longest);
+      length.reach = std::max(0.5 * (longest - shortest), 1e-3 * step);
+    }
+  }
 };
 
 //! What of a grid is likely.
@@ -60,7 +68,9 @@ struct vpPulsePosterior::Pulse {
 };
 
 vpPulsePosterior::vpPulsePosterior(const Lines &lines, const Eigen::Vector3d &start)
-    : m_lines(lines), m_frequency(start(0)), m_inverted(start(2) > 0.5)
+    : m_lines(lines), m_start(start), m_inverted(start(2) > 0.5),
+      m_length((m_inverted ? 1 - start(2) : start(2)) / start(0)),
+      m_half(0.5 * std::abs(lines.time(lines.time.size() - 1) - lines.time(0)))
 {
   const Eigen::ArrayXf above = lines.light - static_cast<float>(lines.dark);
   m_weights = lines.weight.sum();
@@ -69,9 +79,9 @@ vpPulsePosterior::vpPulsePosterior(const Lines &lines, const Eigen::Vector3d &st
   const double lit = m_inverted ? 0.5 * (1 + start(2)) : 0.5 * start(2); // periods, to the pulse's middle
   const double shift = lit - start(1), first = lines.time(0), last = lines.time(lines.time.size() - 1);
   const bool backwards = last < first;
-  const double from = std::min(first, last), to = std::max(first, last), period = 1 / m_frequency;
+  const double from = std::min(first, last), to = std::max(first, last), period = 1 / start(0);
   Eigen::Index next = backwards ? lines.time.size() : 0;
-  for (double k = std::ceil(from * m_frequency - shift - 0.5); (k + shift - 0.5) * period <= to; ++k) {
+  for (double k = std::ceil(from * start(0) - shift - 0.5); (k + shift - 0.5) * period <= to; ++k) {
     Pulse pulse{(k + shift) * period, next, next, {}, {}, {}};
     const auto end = static_cast<float>(pulse.middle + 0.5 * period);
     if (backwards) {
@@ -133,7 +143,7 @@ void vpPulsePosterior::addPulses(const Range &range, double ofFrequency)
   for (const Pulse &pulse : m_pulses) {
     const double middle =
                      0.5 * static_cast<double>(pulse.shares.size() - 1) - 0.5 * static_cast<double>(n - 1),
-                 at = middle + std::clamp(pulse.middle / range.half, -beyond, beyond) * ofFrequency / step;
+                 at = middle + std::clamp(pulse.middle / m_half, -beyond, beyond) * ofFrequency / step;
     const auto first = static_cast<Eigen::Index>(
         std::clamp(std::floor(at), 0.0, static_cast<double>(pulse.shares.size() - n - 1)));
     const auto part = static_cast<float>(at - static_cast<double>(first));
@@ -238,33 +248,65 @@ vpPulsePosterior::Moments vpPulsePosterior::moments(const Range &range, double l
   return moments;
 }
 
-vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eigen::Vector3d &start,
-                                                  bool freeDuty, double inflation, double most)
+//! A line to both sides of the start.
+vpPulsePosterior::Range vpPulsePosterior::firstRange(bool freeDuty) const
+{
+  const double line = m_lines.step;
+  Range range{{15, 0, line}, {25, 0, line}, {freeDuty ? 13 : 1, m_length, freeDuty ? 1.2 * line : 0}};
+  range.cutAt(vpStripeLimits::leastDuty / m_start(0), line);
+  return range;
+}
+
+/*!
+  Frequency, phase and duty by the delay of the last line, the delay and the length: t = (k + shift - phase) /
+  f, later by d is a phase less by f d. A longer pulse's middle stays.
+*/
+Eigen::Matrix3d vpPulsePosterior::byPlace() const
+{
+  const double f = m_start(0), sign = m_inverted ? -1 : 1;
+  Eigen::Matrix3d by = Eigen::Matrix3d::Zero();
+  by(0, 0) = -f / m_half;
+  by(1, 1) = -f;
+  by(2, 2) = sign * f;
+  by(1, 2) = 0.5 * sign * f;
+  return by;
+}
+
+Eigen::Vector3d vpPulsePosterior::parametersAt(const Eigen::Vector3d &place) const
+{
+  return m_start + byPlace() * (place - Eigen::Vector3d(0, 0, m_length));
+}
+
+vpPulsePosterior::Place vpPulsePosterior::likeliest(const Lines &lines, const Eigen::Vector3d &start,
+                                                    bool freeDuty)
 {
   vpPulsePosterior posterior(lines, start);
-  const double period = 1 / start(0),
-               half = 0.5 * std::abs(lines.time(lines.time.size() - 1) - lines.time(0));
-  const double dutyStart = posterior.m_inverted ? 1 - start(2) : start(2);
-  const double shortest = vpStripeLimits::leastDuty * period;
-  Range range{{15, 0, lines.step},
-              {25, 0, lines.step},
-              {freeDuty ? 13 : 1, dutyStart * period, freeDuty ? 1.2 * lines.step : 0},
-              half};
+  const Range range = posterior.firstRange(freeDuty);
+  posterior.evaluate(range);
+  const auto &chiSquares = posterior.m_chiSquares;
+  const auto best = std::min_element(chiSquares.begin(), chiSquares.end());
+  const int place = static_cast<int>(best - chiSquares.begin()), row = place / range.delay.count;
+  return {posterior.parametersAt({range.frequency.at(row % range.frequency.count),
+                                  range.delay.at(place % range.delay.count),
+                                  range.length.at(row / range.frequency.count)}),
+          *best - posterior.changeBetween(range)};
+}
+
+vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eigen::Vector3d &start,
+                                                  bool freeDuty, double inflation)
+{
+  vpPulsePosterior posterior(lines, start);
+  Range range = posterior.firstRange(freeDuty);
   static const int mostRounds = 5;
   double limit = 0;
   for (int round = 1;; ++round) {
-    if (freeDuty && range.length.middle - range.length.reach < shortest) {
-      const double longest = range.length.middle + range.length.reach;
-      range.length.middle = 0.5 * (shortest + longest);
-      range.length.reach = std::max(0.5 * (longest - shortest), 1e-3 * lines.step);
-    }
     posterior.evaluate(range);
     // Places between those of a coarse grid may be better, by as much as edges move on the way to them.
     static const double explained = 25;
-    const double between = posterior.changeBetween(range),
-                 least = *std::min_element(posterior.m_chiSquares.begin(), posterior.m_chiSquares.end());
-    limit = least + explained * inflation + between;
-    if (round == mostRounds || least - between > most) {
+    const double between = posterior.changeBetween(range);
+    limit = *std::min_element(posterior.m_chiSquares.begin(), posterior.m_chiSquares.end()) +
+            explained * inflation + between;
+    if (round == mostRounds) {
       break;
     }
     const Places places = posterior.likely(range, limit);
@@ -278,18 +320,11 @@ vpPulsePosterior::Moments vpPulsePosterior::about(const Lines &lines, const Eige
     range.frequency.narrow(first[0], last[0]);
     range.delay.narrow(first[1], last[1]);
     range.length.narrow(first[2], last[2]);
+    range.cutAt(vpStripeLimits::leastDuty / start(0), lines.step);
   }
   Moments moments = posterior.moments(range, limit, inflation);
-  // From delays and lengths to frequency, phase and duty: t = (k + shift - phase) / f, later by d is a phase
-  // less by f d.
-  Eigen::Matrix3d by = Eigen::Matrix3d::Zero();
-  const double f = start(0), sign = posterior.m_inverted ? -1 : 1;
-  by(0, 0) = -f / half;
-  by(1, 1) = -f;
-  by(2, 2) = sign * f;
-  by(1, 2) = 0.5 * sign * f; // the pulse's middle stays
-  moments.mean = start + by * (moments.mean - Eigen::Vector3d(0, 0, dutyStart * period));
-  moments.covariance = by * moments.covariance * by.transpose();
+  moments.mean = posterior.parametersAt(moments.mean);
+  moments.covariance = posterior.byPlace() * moments.covariance * posterior.byPlace().transpose();
   return moments;
 }
 

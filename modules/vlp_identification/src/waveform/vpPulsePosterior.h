@@ -5,7 +5,6 @@
 #ifndef vpPulsePosterior_h
 #define vpPulsePosterior_h
 
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,16 +47,25 @@ public:
   };
 
   //! \param start Frequency, phase and duty, good to a line. \param freeDuty Whether the duty is unknown.
-  //! \param inflation Of the variances of the lines. \param most Chi-square: where no place can have less,
-  //! the grid is not narrowed down any more.
-  static Moments about(const Lines &lines, const Eigen::Vector3d &start, bool freeDuty, double inflation,
-                       double most = std::numeric_limits<double>::infinity());
+  //! \param inflation Of the variances of the lines.
+  static Moments about(const Lines &lines, const Eigen::Vector3d &start, bool freeDuty, double inflation);
+
+  //! Frequency, phase and duty.
+  struct Place {
+    Eigen::Vector3d at;
+    double least; // a bound of chi-square from below, at all places nearer to it than to others of the grid
+  };
+  //! The likeliest place of the first, coarse grid about the start.
+  static Place likeliest(const Lines &lines, const Eigen::Vector3d &start, bool freeDuty);
 
 private:
   struct Range;
   struct Places;
   struct Pulse;
   vpPulsePosterior(const Lines &lines, const Eigen::Vector3d &start);
+  Range firstRange(bool freeDuty) const;
+  Eigen::Vector3d parametersAt(const Eigen::Vector3d &place) const;
+  Eigen::Matrix3d byPlace() const;
   void evaluate(const Range &range);
   double changeBetween(const Range &range) const;
   Places likely(const Range &range, double limit) const;
@@ -66,8 +74,10 @@ private:
   void addPulses(const Range &range, double ofFrequency);
 
   const Lines &m_lines;
-  double m_frequency; // Hz, at the start
-  bool m_inverted;    // the dark part of a period is the pulse
+  Eigen::Vector3d m_start;
+  bool m_inverted; // the dark part of a period is the pulse
+  double m_length; // s, of a pulse at the start
+  double m_half;   // s, of the profile
   double m_weights = 0, m_lights = 0, m_squares = 0;
   std::vector<Pulse> m_pulses;
   Eigen::ArrayXf m_shares, m_products, m_shareSquares; // sums over pulses, one a phase

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -69,8 +68,8 @@ public:
   bool preferStatedExposure();
 
   //! Where the lines leave gaps, an edge that no line sees leads no descent out of its gap: goes on from the
-  //! likeliest places about the minimum. \param most Chi-square that such a place has to be below.
-  void leaveGap(double most = std::numeric_limits<double>::infinity());
+  //! likeliest place about the minimum.
+  void leaveGap();
 
   //! Turns values and standard deviations into those of the posterior about the minimum that run() found.
   void integrate();
@@ -128,9 +127,8 @@ private:
   Posterior posterior();
   Posterior sliced(const Posterior &bell);
   Posterior onGrid(const Posterior &bell);
-  vpPulsePosterior::Moments momentsWith(double exposed,
-                                        double most = std::numeric_limits<double>::infinity()) const;
-  bool goOnFrom(const vpPulsePosterior::Moments &moments);
+  vpPulsePosterior::Lines linesWith(double exposed) const;
+  bool goOnFrom(const Eigen::Vector3d &place);
   Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);
   double slice(const Vector &axis, double width, double level, Vector &x, double &here, Uniform &uniform);
   void judgeResiduals();

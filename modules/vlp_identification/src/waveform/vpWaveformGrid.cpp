@@ -15,15 +15,12 @@ namespace
 const double deeper = 0.8; // chi-square of another minimum, as a share of that at hand
 }
 
-//! Descends from there where that is far below the minimum at m_x. \return Whether it is another minimum.
-bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
+//! Descends from there. \return Whether it is another minimum, far below that at m_x.
+bool vpWaveformFit::goOnFrom(const Eigen::Vector3d &place)
 {
-  if (!(moments.chiSquare < deeper * m_chiSquare)) {
-    return false;
-  }
   const Vector before = m_x;
   const double least = m_cost;
-  m_x.head<3>() = moments.mean;
+  m_x.head<3>() = place;
   descend(10);
   if (m_cost < deeper * least) {
     judgeResiduals();
@@ -34,10 +31,14 @@ bool vpWaveformFit::goOnFrom(const vpPulsePosterior::Moments &moments)
   return false;
 }
 
-void vpWaveformFit::leaveGap(double most)
+void vpWaveformFit::leaveGap()
 {
   if (leavesGaps()) {
-    goOnFrom(momentsWith(m_x(exposure), std::min(most, deeper * m_chiSquare)));
+    const vpPulsePosterior::Place place =
+        vpPulsePosterior::likeliest(linesWith(m_x(exposure)), m_x.head<3>(), m_freeDuty);
+    if (place.least < deeper * m_chiSquare) {
+      goOnFrom(place.at);
+    }
   }
 }
 
@@ -64,8 +65,11 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
     parts.push_back(part);
     logs.push_back(moments.logEvidence - 0.5 * prior(exposure, part.mean).chiSquare);
   };
+  const auto momentsWith = [this](double exposed) {
+    return vpPulsePosterior::about(linesWith(exposed), m_x.head<3>(), m_freeDuty, m_inflation);
+  };
   const vpPulsePosterior::Moments found = momentsWith(fitted);
-  if (goOnFrom(found)) {
+  if (found.chiSquare < deeper * m_chiSquare && goOnFrom(found.mean)) {
     return onGrid(bell);
   }
   add(found, fitted);
@@ -91,9 +95,8 @@ vpWaveformFit::Posterior vpWaveformFit::onGrid(const Posterior &bell)
   return {all.mean(), all.covariance() + within / sum};
 }
 
-//! Frequency, phase and duty about m_x, were that the exposure, s. \param most As of
-//! vpPulsePosterior::about().
-vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed, double most) const
+//! The profile's, were that the exposure, s.
+vpPulsePosterior::Lines vpWaveformFit::linesWith(double exposed) const
 {
   vpPulsePosterior::Lines lines;
   lines.time = m_time.cast<float>();
@@ -107,7 +110,7 @@ vpPulsePosterior::Moments vpWaveformFit::momentsWith(double exposed, double most
   lines.darkness = m_darkness;
   lines.step = m_line;
   lines.exposure = exposed;
-  return vpPulsePosterior::about(lines, m_x.head<3>(), m_freeDuty, m_inflation, most);
+  return lines;
 }
 
 END_VISP_NAMESPACE
