@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <locale>
 #include <system_error>
 
@@ -37,7 +38,44 @@ std::string temporarySuffix()
 }
 } // namespace
 
-vpAtomicFile::vpAtomicFile(const std::string &filename) : m_filename(filename), m_target(filename)
+/*!
+  Knows why the first write failed. A stream only knows that one did, and commit() may come long after it.
+*/
+class vpAtomicFile::Buffer : public std::filebuf
+{
+public:
+  int error() const { return m_error; }
+
+protected:
+  int_type overflow(int_type c) override
+  {
+    errno = 0;
+    const int_type written = std::filebuf::overflow(c);
+    keepError(traits_type::eq_int_type(written, traits_type::eof()));
+    return written;
+  }
+
+  std::streamsize xsputn(const char *bytes, std::streamsize count) override
+  {
+    errno = 0;
+    const std::streamsize written = std::filebuf::xsputn(bytes, count);
+    keepError(written < count);
+    return written;
+  }
+
+private:
+  void keepError(bool failed)
+  {
+    if (failed && m_error == 0) {
+      m_error = errno;
+    }
+  }
+
+  int m_error = 0; // errno
+};
+
+vpAtomicFile::vpAtomicFile(const std::string &filename)
+    : m_filename(filename), m_target(filename), m_buffer(std::make_unique<Buffer>()), m_stream(m_buffer.get())
 {
   std::error_code ignored;
   const fs::file_status status = fs::status(filename, ignored);
@@ -51,8 +89,7 @@ vpAtomicFile::vpAtomicFile(const std::string &filename) : m_filename(filename), 
   const bool direct = fs::exists(status) && !fs::is_regular_file(status);
   m_written = direct ? m_target : m_target + temporarySuffix();
   errno = 0;
-  m_stream.open(m_written, std::ios::binary | std::ios::trunc);
-  if (!m_stream) {
+  if (m_buffer->open(m_written, std::ios::out | std::ios::binary | std::ios::trunc) == nullptr) {
     const int error = errno;
     m_written.clear();
     fail(error);
@@ -63,7 +100,7 @@ vpAtomicFile::vpAtomicFile(const std::string &filename) : m_filename(filename), 
 vpAtomicFile::~vpAtomicFile()
 {
   if (!m_written.empty() && m_written != m_target) {
-    m_stream.close();
+    m_buffer->close();
     std::error_code ignored;
     fs::remove(m_written, ignored);
   }
@@ -75,9 +112,9 @@ void vpAtomicFile::commit()
     throw vpException(vpException::fatalError, m_filename + ": committed twice");
   }
   errno = 0;
-  m_stream.close();
-  if (!m_stream) {
-    fail(errno);
+  const bool closed = m_buffer->close() != nullptr;
+  if (!closed || !m_stream) {
+    fail(m_buffer->error() != 0 ? m_buffer->error() : errno);
   }
   std::error_code error;
   if (m_written != m_target) {
