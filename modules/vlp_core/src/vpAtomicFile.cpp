@@ -18,6 +18,7 @@
 #endif
 
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpPrintable.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -109,7 +110,7 @@ vpAtomicFile::~vpAtomicFile()
 void vpAtomicFile::commit()
 {
   if (m_written.empty()) {
-    throw vpException(vpException::fatalError, m_filename + ": committed twice");
+    throw vpException(vpException::fatalError, vpPrintable(m_filename) + ": committed twice");
   }
   errno = 0;
   const bool closed = m_buffer->close() != nullptr;
@@ -130,7 +131,7 @@ void vpAtomicFile::fail(int error)
 {
   const std::string reason =
       error == 0 ? std::string("unknown error") : std::generic_category().message(error);
-  throw vpException(vpException::ioError, m_filename + ": cannot be written: " + reason);
+  throw vpException(vpException::ioError, vpPrintable(m_filename) + ": cannot be written: " + reason);
 }
 
 END_VISP_NAMESPACE

@@ -11,13 +11,14 @@
 #include <system_error>
 
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpPrintable.h>
 
 BEGIN_VISP_NAMESPACE
 
 std::string vpReadFile(const std::string &filename)
 {
   const auto fail = [&filename](const std::string &problem, int error) {
-    throw vpException(vpException::ioError, filename + ": " + problem + ": " +
+    throw vpException(vpException::ioError, vpPrintable(filename) + ": " + problem + ": " +
                                                 (error == 0 ? std::string("unknown error")
                                                             : std::generic_category().message(error)));
   };
