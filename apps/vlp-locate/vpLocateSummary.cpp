@@ -10,8 +10,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <visp3/vlp_core/vpPrintable.h>
-
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -56,8 +54,7 @@ std::string vpReasonCount::text() const
   size_t others = 0;
   for (size_t i = 0; i < entries.size(); ++i) {
     if (i < most) {
-      text += (i == 0 ? "" : "; ") + vpPrintable(entries[i].first) + " (" + std::to_string(entries[i].count) +
-              ")";
+      text += (i == 0 ? "" : "; ") + entries[i].first + " (" + std::to_string(entries[i].count) + ")";
     } else {
       others += entries[i].count;
     }

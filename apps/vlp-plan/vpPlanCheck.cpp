@@ -8,7 +8,6 @@
 #include <iostream>
 
 #include <spdlog/spdlog.h>
-#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_evaluation/vpReportTable.h>
 
 #include "vpPlanText.h"
@@ -19,7 +18,7 @@ namespace
 {
 std::string lampsOf(const vpLampMap &map, const vpIdentifier &identifier)
 {
-  const std::string first = vpPrintable(map.lamps[identifier.lamps.front()].id);
+  const std::string first = map.lamps[identifier.lamps.front()].id;
   const size_t more = identifier.lamps.size() - 1;
   return more == 0 ? first : first + " and " + std::to_string(more) + " more";
 }
@@ -57,8 +56,8 @@ std::string tooFast(const vpLampMap &map, const vpLedIdPlanner &planner)
     }
   }
   return count == 0 ? ""
-                    : vpPrintable(first) + (count > 1 ? " and " + std::to_string(count - 1) + " more" : "") +
-                          ": above " + vpFigureText(planner.highest()) +
+                    : first + (count > 1 ? " and " + std::to_string(count - 1) + " more" : "") + ": above " +
+                          vpFigureText(planner.highest()) +
                           " Hz, from where on exposure or rate of lines leave no stripes to rely on";
 }
 
@@ -71,8 +70,8 @@ vpReportTable reuseTable(const vpLampMap &map, const std::vector<vpLedIdReuse> &
   for (size_t i = 0; i < std::min(worst, shared.size()); ++i) {
     const vpIdentifier &identifier = identifiers[shared[i].identifier];
     table.rows.push_back({vpSignalText(identifier.modulation), std::to_string(identifier.lamps.size()),
-                          vpPrintable(map.lamps[shared[i].first].id),
-                          vpPrintable(map.lamps[shared[i].second].id), vpFigureText(shared[i].apart)});
+                          map.lamps[shared[i].first].id, map.lamps[shared[i].second].id,
+                          vpFigureText(shared[i].apart)});
   }
   table.note = "Only their places tell these lamps apart.";
   return table;

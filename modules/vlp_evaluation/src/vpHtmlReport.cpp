@@ -8,9 +8,8 @@
 #include <cstdio>
 #include <utility>
 
-#include <visp3/vlp_evaluation/vpReportTable.h>
-
 #include <visp3/vlp_core/vpPrintable.h>
+#include <visp3/vlp_evaluation/vpReportTable.h>
 
 BEGIN_VISP_NAMESPACE
 
