@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_sensor/vpCameraSource.h>
 #include <visp3/vlp_sensor/vpPictureSequence.h>
 #include <visp3/vlp_sensor/vpResizedSource.h>
@@ -65,7 +66,7 @@ std::unique_ptr<vpFrameSource> vpCameraOptions::open(const vpVlpRig &rig,
   auto camera = std::make_unique<vpCameraSource>(uri, settings, patience);
   const vpCameraSettings now = camera->settings();
   if (now.exposure) {
-    spdlog::info("{}: exposed for {:.4g} us{}", vpOneLine(uri), 1e6 * *now.exposure,
+    spdlog::info("{}: exposed for {:.4g} us{}", uri, 1e6 * *now.exposure,
                  now.gain ? ", gain " + std::to_string(*now.gain) : "");
   }
   return std::make_unique<vpResizedSource>(std::move(camera), rig);
@@ -76,11 +77,11 @@ vpExitCode vpCameraOptions::list()
   std::vector<std::string> missing;
   const std::vector<vpCameraDescription> cameras = vpCameraSource::list(missing);
   for (const vpCameraDescription &camera : cameras) {
-    std::printf("%s\n  %s\n  %s\n", vpOneLine(camera.uri).c_str(), vpOneLine(camera.name).c_str(),
-                vpOneLine(camera.abilities).c_str());
+    std::printf("%s\n  %s\n  %s\n", vpPrintable(camera.uri).c_str(), vpPrintable(camera.name).c_str(),
+                vpPrintable(camera.abilities).c_str());
   }
   for (const std::string &line : missing) {
-    spdlog::info(vpOneLine(line));
+    spdlog::info(line);
   }
   if (cameras.empty()) {
     spdlog::warn("no camera found");

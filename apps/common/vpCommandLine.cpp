@@ -14,8 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
-
-#include "common/vpProgram.h"
+#include <visp3/vlp_core/vpPrintable.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -86,7 +85,7 @@ void vpAddChoice(CLI::App &app, const std::string &option, std::string &value,
   }
   app.add_option(option, value, help)->type_name(names)->check([choices, names](const std::string &text) {
     const bool known = std::find(choices.begin(), choices.end(), text) != choices.end();
-    return known ? std::string() : vpOneLine(text) + ", expected " + names;
+    return known ? std::string() : vpPrintable(text) + ", expected " + names;
   });
 }
 

@@ -15,7 +15,6 @@
 
 #include "common/vpCommandLine.h"
 #include "common/vpInterrupt.h"
-#include "common/vpProgram.h"
 #include "common/vpProgressBar.h"
 
 BEGIN_VISP_NAMESPACE
@@ -111,7 +110,7 @@ void vpForEachFrame(vpFrameSource &source, const std::string &name,
                     const std::function<void(const vpVlpFrame &)> &use)
 {
   if (const std::string remark = source.remark(); !remark.empty()) {
-    spdlog::warn(vpOneLine(remark));
+    spdlog::warn(remark);
   }
   vpProgressBar progress(source.size());
   size_t done = 0, used = 0;
@@ -124,7 +123,7 @@ void vpForEachFrame(vpFrameSource &source, const std::string &name,
       more = source.next(frame);
     } catch (const vpException &error) { // about one frame; the rest is still to come
       progress.clear();
-      spdlog::warn(vpOneLine(error.getStringMessage()));
+      spdlog::warn(error.getStringMessage());
       ++done;
       continue;
     }

@@ -7,14 +7,17 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <new>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utils/logger.hpp>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
-#include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpPrintable.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -30,9 +33,25 @@ void silenceLibraries()
 #endif
 }
 
+//! A message as one line, whatever is in the names that it tells.
+class PrintableMessage : public spdlog::custom_flag_formatter
+{
+public:
+  void format(const spdlog::details::log_msg &message, const std::tm &, spdlog::memory_buf_t &line) override
+  {
+    const std::string text = vpPrintable(std::string(message.payload.data(), message.payload.size()));
+    line.append(text.data(), text.data() + text.size());
+  }
+
+  std::unique_ptr<custom_flag_formatter> clone() const override
+  {
+    return std::make_unique<PrintableMessage>();
+  }
+};
+
 int failed(const std::string &problem)
 {
-  spdlog::error(vpOneLine(problem));
+  spdlog::error(problem);
   return static_cast<int>(vpExitCode::badInput);
 }
 } // namespace
@@ -40,7 +59,9 @@ int failed(const std::string &problem)
 int vpRunProgram(const std::string &name, const std::function<vpExitCode()> &run)
 {
   spdlog::set_default_logger(spdlog::stderr_color_mt(name));
-  spdlog::set_pattern("%n: %^%l%$: %v");
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<PrintableMessage>('*').set_pattern("%n: %^%l%$: %*");
+  spdlog::set_formatter(std::move(formatter));
   silenceLibraries();
   return vpExitStatus(run);
 }
@@ -71,7 +92,7 @@ bool vpParseCommandLine(CLI::App &app, int argc, char **argv)
     std::cout << version.what() << "\n";
     return false;
   } catch (const CLI::ParseError &error) {
-    throw vpException(vpException::badValue, vpOneLine(error.what()) + " (--help explains the options)");
+    throw vpException(vpException::badValue, std::string(error.what()) + " (--help explains the options)");
   }
   return true;
 }
@@ -79,16 +100,6 @@ bool vpParseCommandLine(CLI::App &app, int argc, char **argv)
 std::string vpVersionOf(const std::string &program)
 {
   return program + " (visp_vlp) " VLP_VERSION;
-}
-
-std::string vpOneLine(const std::string &text)
-{
-  constexpr size_t piece = 80; // vpShown cuts what is longer
-  std::string line;
-  for (size_t i = 0; i < text.size(); i += piece) {
-    line += vpShown(text.substr(i, piece));
-  }
-  return line;
 }
 
 END_VISP_NAMESPACE

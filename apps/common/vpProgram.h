@@ -26,8 +26,8 @@ enum class vpExitCode {
 };
 
 /*!
-  What main() returns: runs \e run with spdlog writing to stderr as `name: level: text`. An exception is one
-  line there and exit code 2, and so is a stdout that takes nothing more.
+  What main() returns: runs \e run with spdlog writing to stderr as `name: level: text`, always one line
+  (vpPrintable). An exception is one there and exit code 2, and so is a stdout that takes nothing more.
 */
 int vpRunProgram(const std::string &name, const std::function<vpExitCode()> &run);
 
@@ -42,9 +42,6 @@ bool vpParseCommandLine(CLI::App &app, int argc, char **argv);
 
 //! What `--version` prints of a program: a line.
 std::string vpVersionOf(const std::string &program);
-
-//! \e text as one line: control characters escaped. For what comes from outside, as names of files.
-std::string vpOneLine(const std::string &text);
 
 END_VISP_NAMESPACE
 

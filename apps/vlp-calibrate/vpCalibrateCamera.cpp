@@ -127,7 +127,7 @@ void tellCoverage(const Seen &seen)
       covered[static_cast<size_t>(v * across + u)] = true;
     }
   }
-  spdlog::info("{}: {}; {:.0f} % of the picture covered so far", vpOneLine(seen.sights.back().picture),
+  spdlog::info("{}: {}; {:.0f} % of the picture covered so far", seen.sights.back().picture,
                seen.sights.back().pixels.empty() ? "no board" : "board found",
                100. * static_cast<double>(std::count(covered.begin(), covered.end(), true)) /
                    static_cast<double>(covered.size()));
@@ -232,14 +232,14 @@ vpExitCode vpCalibrateCamera(int argc, char **argv)
     vpAtomicFile file(options.print);
     file.stream() << options.board.pdf();
     file.commit();
-    spdlog::info(vpOneLine(options.print) + ": print it at 100 %, then measure the line below the board");
+    spdlog::info(options.print + ": print it at 100 %, then measure the line below the board");
     return vpExitCode::done;
   }
   if (!options.info.empty()) {
     const vpCameraXml camera = vpCameraFromInfo(options.info);
     const vpCalibrationFolder folder(options.out);
     camera.save(folder / "camera.xml");
-    spdlog::info("{}: camera.xml of {}", vpOneLine(options.out), vpOneLine(camera.name));
+    spdlog::info("{}: camera.xml of {}", options.out, camera.name);
     return vpExitCode::done;
   }
   const Seen seen = look(options);
@@ -248,10 +248,10 @@ vpExitCode vpCalibrateCamera(int argc, char **argv)
     const bool other = !seen.otherSize.empty() && seen.otherSize != options.board.size() &&
                        std::all_of(seen.sights.begin(), seen.sights.end(),
                                    [](const vpBoardSight &sight) { return sight.pixels.empty(); });
-    spdlog::error(vpOneLine(other ? "no picture shows a chessboard of " + options.board.size() +
-                                        " inner corners; one of " + seen.otherSize + " is there: --size " +
-                                        seen.otherSize
-                                  : found.refusal));
+    spdlog::error(other
+                      ? "no picture shows a chessboard of " + options.board.size() +
+                            " inner corners; one of " + seen.otherSize + " is there: --size " + seen.otherSize
+                      : found.refusal);
     return vpExitCode::nothingFound;
   }
   const std::string text = cameraText(found, seen);

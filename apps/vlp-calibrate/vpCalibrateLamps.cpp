@@ -137,7 +137,7 @@ vpExitCode vpCalibrateLamps(int argc, char **argv)
 
   const vpSurveyResult found = survey.solve(options.read(rig, map), rig, map);
   if (!found.bundle.valid) {
-    spdlog::error(vpOneLine(found.bundle.refusal));
+    spdlog::error(found.bundle.refusal);
     return vpExitCode::nothingFound;
   }
   std::string text = tableOf(found).text() + "\n" + vpRigTable(found.bundle, survey.bundle.rigSigma).text();
@@ -147,11 +147,11 @@ vpExitCode vpCalibrateLamps(int argc, char **argv)
   vpWarnOfInflatedMap(found.bundle, map);
   for (size_t k = 0; k < found.lamps.size(); ++k) {
     if (found.lamps[k].state == State::displaced) {
-      spdlog::warn("lamp {} is {:.0f} mm from where the map has it", vpOneLine(map.lamps[k].id),
+      spdlog::warn("lamp {} is {:.0f} mm from where the map has it", map.lamps[k].id,
                    1000 * found.lamps[k].offset.norm());
     } else if (found.lamps[k].state == State::undetermined || found.lamps[k].state == State::unseen) {
       spdlog::warn("lamp {} keeps the map's place: seen too little, drive where it is in view from far apart",
-                   vpOneLine(map.lamps[k].id));
+                   map.lamps[k].id);
     }
   }
   if (!options.out.empty()) {
@@ -163,7 +163,7 @@ vpExitCode vpCalibrateLamps(int argc, char **argv)
     folder.write("covariance.csv", vpCovarianceCsv(found.bundle));
     found.bundle.map.save(folder / "lamps.yaml", {"surveyed by vlp-calibrate lamps"});
     folder.writeRig(found.bundle.rig);
-    spdlog::info(vpOneLine(options.out) + ": lamps.yaml, rig.yaml, report, covariance, residuals.png");
+    spdlog::info(options.out + ": lamps.yaml, rig.yaml, report, covariance, residuals.png");
   }
   return vpExitCode::done;
 }

@@ -60,7 +60,7 @@ vpExitCode vpCalibrateMount(int argc, char **argv)
 
   const vpBundleResult found = calibration.solve(options.read(rig, map), rig, map);
   if (!found.valid) {
-    spdlog::error(vpOneLine(found.refusal));
+    spdlog::error(found.refusal);
     return vpExitCode::nothingFound;
   }
   vpReportTable table = vpRigTable(found, calibration.bundle.rigSigma);
@@ -80,8 +80,7 @@ vpExitCode vpCalibrateMount(int argc, char **argv)
     folder.write("report.txt", text);
     folder.write("covariance.csv", vpCovarianceCsv(found));
     folder.writeRig(found.rig);
-    spdlog::info(vpOneLine(options.out) +
-                 ": rig.yaml with its camera.xml, report, covariance, residuals.png");
+    spdlog::info(options.out + ": rig.yaml with its camera.xml, report, covariance, residuals.png");
   }
   return vpExitCode::done;
 }

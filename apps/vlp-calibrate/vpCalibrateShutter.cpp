@@ -172,7 +172,7 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
   }
   const vpShutterEstimate found = calibration.solve();
   if (!found.valid) {
-    spdlog::error(vpOneLine(found.refusal));
+    spdlog::error(found.refusal);
     return vpExitCode::nothingFound;
   }
   const std::string text = shutterText(found);
@@ -193,7 +193,7 @@ vpExitCode vpCalibrateShutter(int argc, char **argv)
     const vpCalibrationFolder folder(options.out);
     folder.write("report.txt", text + "\n" + sightsOf(found));
     folder.writeRig(rig);
-    spdlog::info(vpOneLine(options.out) + ": rig.yaml with this shutter, camera.xml, report");
+    spdlog::info(options.out + ": rig.yaml with this shutter, camera.xml, report");
   }
   return vpExitCode::done;
 }

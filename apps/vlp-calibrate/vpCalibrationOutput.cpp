@@ -16,7 +16,6 @@
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpPoseText.h>
 
-#include "common/vpProgram.h"
 #include "common/vpTextBlock.h"
 
 BEGIN_VISP_NAMESPACE
@@ -132,7 +131,7 @@ void vpWarnOfInflatedMap(const vpBundleResult &result, const vpLampMap &map)
       "lamps that hang exactly where position_m has them do not explain the pictures: each was taken "
       "for {:.1f} mm uncertain; {} is farthest off, by {:.1f} mm. Measure again, or give a "
       "position_sigma_m",
-      1000 * result.inflatedLampSigma, vpOneLine(map.lamps[farthest].id), 1000 * offset(farthest));
+      1000 * result.inflatedLampSigma, map.lamps[farthest].id, 1000 * offset(farthest));
 }
 
 std::string vpCovarianceCsv(const vpBundleResult &result)

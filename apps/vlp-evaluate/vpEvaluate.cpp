@@ -103,7 +103,7 @@ vpExitCode vpEvaluate(const vpEvaluateOptions &options)
   const vpEvaluation evaluation = vpEvaluation::of(truth, estimate, log ? &*log : nullptr, options.settings);
 
   if (const std::string reason = emptiness(options, evaluation); !reason.empty()) {
-    spdlog::error(vpOneLine(reason));
+    spdlog::error(reason);
     return vpExitCode::nothingFound;
   }
   if (options.out.empty()) {
@@ -114,7 +114,7 @@ vpExitCode vpEvaluate(const vpEvaluateOptions &options)
   vpEvaluateFolder folder(options.out);
   writeReport(options, evaluation, folder);
   print(evaluation);
-  spdlog::info(vpOneLine(options.out) + ": report.html, statistics.csv and figures");
+  spdlog::info(options.out + ": report.html, statistics.csv and figures");
   return vpExitCode::done;
 }
 

@@ -86,7 +86,7 @@ vpExitCode vpEvaluateRuns(const vpEvaluateOptions &options)
     }
     folder.add("report.html", vpHtmlPage(options.title, sources, {}, figures, {table}));
     folder.write();
-    spdlog::info(vpOneLine(options.out) + ": report.html and figures");
+    spdlog::info(options.out + ": report.html and figures");
   }
   std::cout << table.text();
   return vpExitCode::done;

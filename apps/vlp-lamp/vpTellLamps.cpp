@@ -15,6 +15,7 @@
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_robot/vpSerialTransport.h>
 
 #include "vpLampBoard.h"
@@ -51,7 +52,7 @@ vpExitCode listPorts()
         break;
       }
     }
-    std::cout << "/dev/" << name << (product.empty() ? "" : "  " + vpOneLine(product)) << "\n";
+    std::cout << "/dev/" << name << (product.empty() ? "" : "  " + vpPrintable(product)) << "\n";
   }
   if (names.empty()) {
     spdlog::error("no serial port: is the lamp plugged in?");
@@ -79,7 +80,7 @@ void warnOfRounding(const vpLamp &lamp, const std::string &sent)
 void tell(const std::string &port, const vpLamp &lamp)
 {
   const std::string sent = boardAt(port).set(lamp);
-  std::cout << vpOneLine(lamp.id) << "  " << vpOneLine(sent) << std::endl;
+  std::cout << vpPrintable(lamp.id) << "  " << vpPrintable(sent) << std::endl;
   warnOfRounding(lamp, sent);
 }
 
@@ -97,7 +98,7 @@ void tellAll(const vpLampMap &map, const vpLampOptions &options)
 {
   for (size_t told = 0; told < map.lamps.size();) {
     const vpLamp &lamp = map.lamps[told];
-    std::cerr << "plug in " << vpOneLine(lamp.id) << " (" << told + 1 << " of " << map.lamps.size()
+    std::cerr << "plug in " << vpPrintable(lamp.id) << " (" << told + 1 << " of " << map.lamps.size()
               << "), press Enter" << std::endl;
     std::string line;
     if (!std::getline(std::cin, line)) {
@@ -120,7 +121,7 @@ vpExitCode vpTellLamps(const vpLampOptions &options)
     return listPorts();
   }
   if (options.show) {
-    std::cout << vpOneLine(boardAt(options.port).show()) << "\n";
+    std::cout << vpPrintable(boardAt(options.port).show()) << "\n";
     return vpExitCode::done;
   }
   const vpLampMap map = vpLampMap::load(options.map);

@@ -59,7 +59,7 @@ public:
         locate(located);
       } catch (const vpException &error) {
         progress.clear();
-        spdlog::error(vpOneLine(error.getStringMessage()));
+        spdlog::error(error.getStringMessage());
         m_summary.addBad();
         continue;
       }
@@ -84,7 +84,7 @@ private:
   void remarkOnFrames() const
   {
     if (const std::string remark = m_source->remark(); !remark.empty()) {
-      spdlog::warn("{}; {}", vpOneLine(remark),
+      spdlog::warn("{}; {}", remark,
                    m_options.noTrack
                        ? "each frame is located by itself all the same"
                        : "a frame that is up to a second late gives no position, at one that is later all "
@@ -152,7 +152,7 @@ private:
     const size_t frames = m_summary.used() + m_summary.bad();
     if (m_summary.used() == 0 && stopped.empty()) { // nothing to write: the outputs stay away
       if (frames != 1) {                            // of one, its own line says all
-        spdlog::error(vpOneLine(m_options.frames.name()) +
+        spdlog::error(m_options.frames.name() +
                       (frames == 0 ? ": no frames, expected one or more"
                                    : ": none of the " + std::to_string(frames) + " frames could be used"));
       }
@@ -168,7 +168,7 @@ private:
     remarkOnClaims();
     if (const std::string remark = m_source->remark();
         !m_options.frames.camera.uri.empty() && !remark.empty()) {
-      spdlog::warn(vpOneLine(remark)); // what became of the frames is known by now
+      spdlog::warn(remark); // what became of the frames is known by now
     }
     if (const size_t left = m_outputs.posesLeftOut(); left > 0) {
       spdlog::info("{} not among the poses, whose times rise from row to row (--fixes has every frame)",
@@ -186,8 +186,7 @@ private:
       spdlog::warn(
           "{}: shutter.exposure_s: {} s, expected about {} s: so soft are the stripes' edges, and lamps were "
           "read with that",
-          vpOneLine(m_options.rigFile), vpFormat("%.2g", m_rig.shutter.exposure),
-          vpFormat("%.2g", exposure.exposure()));
+          m_options.rigFile, vpFormat("%.2g", m_rig.shutter.exposure), vpFormat("%.2g", exposure.exposure()));
     }
     const bool mapStatesSigma = std::any_of(m_map.lamps.begin(), m_map.lamps.end(),
                                             [](const vpLamp &lamp) { return lamp.positionSigma > 0; });
@@ -196,7 +195,7 @@ private:
       spdlog::info(
           "{} and {} state no position_sigma_m, rotation_sigma_deg or translation_sigma_m: positions "
           "are told as certain as where lamps and camera are known exactly",
-          vpOneLine(m_options.lampsFile), vpOneLine(m_options.rigFile));
+          m_options.lampsFile, m_options.rigFile);
     }
   }
 
@@ -245,7 +244,7 @@ vpExitCode vpLocate(const vpLocateOptions &asked)
   if (options.display) {
     const std::string missing = vpVlpWindow::missing();
     if (!missing.empty()) {
-      spdlog::warn("--display: {}; going on without the window", vpOneLine(missing));
+      spdlog::warn("--display: {}; going on without the window", missing);
       options.display = false;
     }
   }

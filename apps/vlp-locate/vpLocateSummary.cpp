@@ -10,8 +10,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "common/vpProgram.h"
-
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -56,8 +54,7 @@ std::string vpReasonCount::text() const
   size_t others = 0;
   for (size_t i = 0; i < entries.size(); ++i) {
     if (i < most) {
-      text +=
-          (i == 0 ? "" : "; ") + vpOneLine(entries[i].first) + " (" + std::to_string(entries[i].count) + ")";
+      text += (i == 0 ? "" : "; ") + entries[i].first + " (" + std::to_string(entries[i].count) + ")";
     } else {
       others += entries[i].count;
     }
@@ -96,8 +93,8 @@ void vpLocateSummary::add(const vpLocatedFrame &located)
 void vpLocateSummary::log() const
 {
   if (m_used > 0 && m_positions == 0) {
-    spdlog::error("no position in {}: {}",
-                  m_used == 1 ? vpOneLine(m_name) : "any of " + counted(m_used, "frame"), m_refusals.text());
+    spdlog::error("no position in {}: {}", m_used == 1 ? m_name : "any of " + counted(m_used, "frame"),
+                  m_refusals.text());
   } else if (m_used > 0) {
     spdlog::info("{}, {}{}, {:.1f} ms a frame on average{}", counted(m_used, "frame"),
                  counted(m_positions, "position"),
@@ -118,7 +115,7 @@ void vpLocateSummary::log() const
     if (places.wrong >= enough && places.wrong > times * places.right) {
       spdlog::warn(
           "lamp {} is not where the map has it in {} of {} images: measure it, or let vlp-calibrate lamps",
-          vpOneLine(id), places.wrong, places.wrong + places.right);
+          id, places.wrong, places.wrong + places.right);
     }
   }
 }

@@ -222,7 +222,7 @@ vpExitCode vpPlan(const vpPlanOptions &options)
   const Choice choice =
       options.words ? chooseWords(planner, options, seen) : chooseFrequencies(planner, options, seen);
   if (!choice.refusal.empty()) {
-    spdlog::error(vpOneLine(choice.refusal));
+    spdlog::error(choice.refusal);
     return vpExitCode::nothingFound;
   }
   if (!options.picture.empty()) {

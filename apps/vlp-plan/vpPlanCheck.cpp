@@ -18,7 +18,7 @@ namespace
 {
 std::string lampsOf(const vpLampMap &map, const vpIdentifier &identifier)
 {
-  const std::string first = vpOneLine(map.lamps[identifier.lamps.front()].id);
+  const std::string first = map.lamps[identifier.lamps.front()].id;
   const size_t more = identifier.lamps.size() - 1;
   return more == 0 ? first : first + " and " + std::to_string(more) + " more";
 }
@@ -56,8 +56,8 @@ std::string tooFast(const vpLampMap &map, const vpLedIdPlanner &planner)
     }
   }
   return count == 0 ? ""
-                    : vpOneLine(first) + (count > 1 ? " and " + std::to_string(count - 1) + " more" : "") +
-                          ": above " + vpFigureText(planner.highest()) +
+                    : first + (count > 1 ? " and " + std::to_string(count - 1) + " more" : "") + ": above " +
+                          vpFigureText(planner.highest()) +
                           " Hz, from where on exposure or rate of lines leave no stripes to rely on";
 }
 
@@ -70,7 +70,7 @@ vpReportTable reuseTable(const vpLampMap &map, const std::vector<vpLedIdReuse> &
   for (size_t i = 0; i < std::min(worst, shared.size()); ++i) {
     const vpIdentifier &identifier = identifiers[shared[i].identifier];
     table.rows.push_back({vpSignalText(identifier.modulation), std::to_string(identifier.lamps.size()),
-                          vpOneLine(map.lamps[shared[i].first].id), vpOneLine(map.lamps[shared[i].second].id),
+                          map.lamps[shared[i].first].id, map.lamps[shared[i].second].id,
                           vpFigureText(shared[i].apart)});
   }
   table.note = "Only their places tell these lamps apart.";
@@ -86,7 +86,7 @@ vpExitCode vpPlanCheck(const vpPlanOptions &options)
   const std::vector<vpLedIdPair> pairs = planner.confusion(map, options.highest, options.diameter);
   const std::vector<vpLedIdReuse> shared = vpLedIdPlanner::reuse(map);
   if (pairs.empty() && shared.empty()) {
-    spdlog::error(vpOneLine(options.check) + ": no two lamps that blink alike, nothing to confuse");
+    spdlog::error(options.check + ": no two lamps that blink alike, nothing to confuse");
     return vpExitCode::nothingFound;
   }
   if (const std::string warning = tooFast(map, planner); !warning.empty()) {

@@ -11,7 +11,6 @@
 #include <visp3/vlp_identification/vpIdentifierLayout.h>
 #include <visp3/vlp_identification/vpLedIdPlanner.h>
 
-#include "common/vpProgram.h"
 #include "vpPlanText.h"
 
 BEGIN_VISP_NAMESPACE
@@ -54,10 +53,10 @@ vpReportTable vpLayOver(vpLampMap &map, const std::vector<vpModulation> &signals
   }
 
   const std::vector<vpLedIdReuse> shared = vpLedIdPlanner::reuse(map); // those nearest to each other first
-  const std::string apart = shared.empty() ? "none is on two lamps"
-                                           : vpFigureText(shared[0].apart) + " (" +
-                                                 vpOneLine(map.lamps[shared[0].first].id) + ", " +
-                                                 vpOneLine(map.lamps[shared[0].second].id) + ")";
+  const std::string apart = shared.empty()
+                                ? "none is on two lamps"
+                                : vpFigureText(shared[0].apart) + " (" + map.lamps[shared[0].first].id +
+                                      ", " + map.lamps[shared[0].second].id + ")";
   const size_t used = map.identifiers().size();
   const std::string of = used == signals.size() ? "" : " of " + std::to_string(signals.size());
   vpReportTable table;

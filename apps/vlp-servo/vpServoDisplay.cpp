@@ -16,7 +16,6 @@
 #include <visp3/core/vpException.h>
 #include <visp3/gui/vpPlot.h>
 
-#include "common/vpProgram.h"
 #include "common/vpVlpDashboard.h"
 #include "common/vpVlpWindow.h"
 
@@ -89,7 +88,7 @@ struct vpServoDisplay::Impl {
         clicked = clicked || window.clicked();
       }
     } catch (const vpException &error) {
-      spdlog::warn("--display: {}; going on without the window", vpOneLine(error.getStringMessage()));
+      spdlog::warn("--display: {}; going on without the window", error.getStringMessage());
     }
   }
 
@@ -138,7 +137,7 @@ vpServoDisplay::vpServoDisplay(bool wanted, const vpPath &path, vpServoWorld &wo
     return;
   }
   if (const std::string missing = vpVlpWindow::missing(); !missing.empty()) {
-    spdlog::warn("--display: {}; going on without the window", vpOneLine(missing));
+    spdlog::warn("--display: {}; going on without the window", missing);
     return;
   }
   m_impl = std::make_unique<Impl>(path, world.map());

@@ -14,7 +14,6 @@
 #include <visp3/vlp_evaluation/vpGnuplot.h>
 #include <visp3/vlp_evaluation/vpReportTable.h>
 
-#include "common/vpProgram.h"
 #include "common/vpServoTracks.h"
 #include "common/vpTextBlock.h"
 
@@ -73,7 +72,7 @@ void vpDrawServoTracks(const vpServoLog &log, const std::string &folder)
   try {
     vpGnuplot::check();
   } catch (const vpException &error) {
-    spdlog::warn("no picture of the track: {}", vpOneLine(error.getStringMessage()));
+    spdlog::warn("no picture of the track: {}", error.getStringMessage());
     return;
   }
   const vpFigure figure = vpServoTracksFigure("track", log.path, {{"this run", log}});

@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/io/vpKeyboard.h>
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_robot/vpOpenTurtleBot3.h>
 #include <visp3/vlp_servo/vpServoLog.h>
 
@@ -33,7 +34,7 @@ vpExitCode listRobots()
 {
   const std::vector<vpAttachedBoard> boards = vpAttachedBoards();
   for (const vpAttachedBoard &board : boards) {
-    std::cout << vpOneLine(board.uri) << "\n  " << vpOneLine(board.remark) << "\n";
+    std::cout << vpPrintable(board.uri) << "\n  " << vpPrintable(board.remark) << "\n";
   }
   if (boards.empty()) {
     spdlog::warn("no board found on USB; one on a serial device is not looked for");
@@ -120,7 +121,7 @@ public:
     case vpServoRun::End::failed:
       break;
     }
-    spdlog::error("the robot stands: {}", vpOneLine(m_log.run.reason));
+    spdlog::error("the robot stands: {}", m_log.run.reason);
     return vpExitCode::nothingFound;
   }
 
@@ -157,7 +158,7 @@ private:
   {
     m_moving = step.share > 0;
     if (!m_moving) {
-      spdlog::warn("{:.2f} s: the robot stands: {}", step.time, vpOneLine(step.waiting));
+      spdlog::warn("{:.2f} s: the robot stands: {}", step.time, step.waiting);
     } else if (m_hasMoved) {
       spdlog::info("{:.2f} s: it goes on", step.time);
     }

@@ -6,10 +6,10 @@
 #define vpFakeGvCamera_h
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 
@@ -28,10 +28,9 @@ public:
   using Picture =
       std::function<const vpImage<unsigned char> &(unsigned int frame, double exposure, double gain)>;
 
-  vpFakeGvCamera(const std::string &serial, Picture picture)
-      : m_picture(std::move(picture)),
-        m_camera(arv_gv_fake_camera_new_full("127.0.0.1", serial.c_str(), nullptr))
+  vpFakeGvCamera(const std::string &serial, Picture picture) : m_picture(std::move(picture))
   {
+    m_camera = arv_gv_fake_camera_new_full("127.0.0.1", serial.c_str(), nullptr);
     if (m_camera == nullptr || arv_gv_fake_camera_is_running(m_camera) == FALSE) {
       throw std::runtime_error("the camera in software cannot listen on 127.0.0.1");
     }
@@ -65,8 +64,8 @@ private:
   }
 
   Picture m_picture;
-  ArvGvFakeCamera *m_camera;
-  unsigned int m_frame = 0; // in Aravis' thread
+  std::atomic<ArvGvFakeCamera *> m_camera{nullptr}; // which has a thread
+  unsigned int m_frame = 0;                         // in Aravis' thread
 };
 
 #endif

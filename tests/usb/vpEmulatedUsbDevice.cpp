@@ -69,6 +69,7 @@ vpEmulatedUsbDevice::~vpEmulatedUsbDevice()
     umockdev_testbed_detach_ioctl(m_testbed.get(), node.c_str(), nullptr);
   }
   g_object_unref(m_handler);
+  const std::lock_guard<std::mutex> lock(m_mutex); // waits for an answer that is on its way
 }
 
 void vpEmulatedUsbDevice::plug(int number)

@@ -8,8 +8,12 @@
 
 #include <gtest/gtest.h>
 #include <visp3/vlp_core/vpAtomicFile.h>
+#include <visp3/vlp_core/vpCameraXml.h>
 #include <visp3/vlp_core/vpCsvTable.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpPrintable.h>
+#include <visp3/vlp_core/vpReadFile.h>
+#include <visp3/vlp_core/vpTrajectory.h>
 #include <visp3/vlp_core/vpYamlNode.h>
 
 #include "common/vpExpectError.h"
@@ -64,6 +68,55 @@ TEST(NumberText, ShownStaysOneShortLine)
   EXPECT_EQ(vpShown(std::string(1000, 'x')).size(), 83u);
 }
 
+TEST(NumberText, ShownCutsBetweenCharacters)
+{
+  const std::string before(79, 'x'), umlaut = "\xC3\xBC";
+  EXPECT_EQ(vpShown(before + umlaut), before + "...");
+  EXPECT_EQ(vpShown(before.substr(1) + umlaut), before.substr(1) + umlaut);
+}
+
+TEST(Printable, KeepsTextAndEscapesWhatIsNone)
+{
+  const std::string text = "lamp 1, L\xC3\xBC"
+                           "fter, \xE7\x81\xAF, \xF0\x9F\x92\xA1 \\x";
+  EXPECT_EQ(vpPrintable(text), text);
+  EXPECT_EQ(vpPrintable(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(vpPrintable("\x1b[2J\r\n\x7f"), "\\x1b[2J\\x0d\\x0a\\x7f");
+  EXPECT_EQ(vpPrintable("\xC2\x9b"
+                        "31m"),
+            "\\xc2\\x9b31m"); // CSI as one character
+  EXPECT_EQ(vpPrintable("\x9b"
+                        "31m"),
+            "\\x9b31m");                                     // and as one byte
+  EXPECT_EQ(vpPrintable("\xE2\x80\xAE"), "\\xe2\\x80\\xae"); // from right to left
+  EXPECT_EQ(vpPrintable("\xE2\x80\xA8"), "\\xe2\\x80\\xa8"); // end of a line
+  EXPECT_EQ(vpPrintable("\xC3"), "\\xc3");                   // cut short
+  EXPECT_EQ(vpPrintable("\xC0\xAF"), "\\xc0\\xaf");          // longer than it has to be
+  EXPECT_EQ(vpPrintable("\xED\xA0\x80"), "\\xed\\xa0\\x80"); // half a surrogate pair
+}
+
+TEST(Printable, NamesOfFilesInErrors)
+{
+  const vpTemporaryFolder folder;
+  const std::string name = "a\n\x1b[2J\xff", shown = folder / "a\\x0a\\x1b[2J\\xff";
+  vpExpectError([&] { vpReadFile(folder / name); }, {shown + ": cannot be opened"});
+  vpExpectError([&] { vpAtomicFile file(folder / (name + "/b")); }, {shown + "/b: cannot be written"});
+  const std::string file = folder.write(name, "none");
+  vpExpectError([&] { vpCsvTable::load(file, {"x"}); }, {shown + ":1: header"});
+  vpExpectError([&] { vpYamlNode::load(file).text("id"); }, {shown});
+  vpExpectError([&] { vpTrajectory::load(file); }, {shown + ":1: 1 field"});
+  vpExpectError([&] { vpCameraXml::load(file, "camera"); }, {shown + ":1: not XML"});
+}
+
+TEST(Printable, NamesOfCamerasAreRefusedThatXmlCannotHold)
+{
+  const vpTemporaryFolder folder;
+  vpCameraXml xml;
+  xml.name = "a\x1b";
+  vpExpectError([&] { xml.save(folder / "camera.xml"); }, {"camera.name: a\\x1b, expected text on one line"});
+  EXPECT_EQ(folder.count(), 0u);
+}
+
 TEST(AtomicFile, AppearsWholeOrNotAtAll)
 {
   const vpTemporaryFolder folder;
@@ -116,6 +169,13 @@ TEST(AtomicFile, SaysWhatWentWrong)
           file.commit();
         },
         {"/dev/full: cannot be written: No space left on device"});
+    vpExpectError(
+        [] {
+          vpAtomicFile file("/dev/full");
+          file.stream() << std::string(100000, 'x'); // which fails at once, not at the end
+          file.commit();
+        },
+        {"/dev/full: cannot be written: No space left on device"});
   }
 }
 
@@ -132,6 +192,7 @@ TEST(CsvTable, ReadsWhatTheFileSays)
   EXPECT_EQ(table.text(1, 1), "b,\"c\".png");
   EXPECT_EQ(vpCsvTable::field("b,\"c\".png"), "\"b,\"\"c\"\".png\"");
   EXPECT_EQ(vpCsvTable::field("plain"), "plain");
+  EXPECT_EQ(vpCsvTable::field("a\nb\x1b[2J"), "\"a b [2J\"");
   EXPECT_EQ(vpCsvTable::load(folder.write("empty.csv", "\xEF\xBB\xBFx,y"), {"x", "y"}).rows(), 0u);
 }
 

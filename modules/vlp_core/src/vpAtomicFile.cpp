@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <locale>
 #include <system_error>
 
@@ -17,6 +18,7 @@
 #endif
 
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpPrintable.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -37,7 +39,44 @@ std::string temporarySuffix()
 }
 } // namespace
 
-vpAtomicFile::vpAtomicFile(const std::string &filename) : m_filename(filename), m_target(filename)
+/*!
+  Knows why the first write failed. A stream only knows that one did, and commit() may come long after it.
+*/
+class vpAtomicFile::Buffer : public std::filebuf
+{
+public:
+  int error() const { return m_error; }
+
+protected:
+  int_type overflow(int_type c) override
+  {
+    errno = 0;
+    const int_type written = std::filebuf::overflow(c);
+    keepError(traits_type::eq_int_type(written, traits_type::eof()));
+    return written;
+  }
+
+  std::streamsize xsputn(const char *bytes, std::streamsize count) override
+  {
+    errno = 0;
+    const std::streamsize written = std::filebuf::xsputn(bytes, count);
+    keepError(written < count);
+    return written;
+  }
+
+private:
+  void keepError(bool failed)
+  {
+    if (failed && m_error == 0) {
+      m_error = errno;
+    }
+  }
+
+  int m_error = 0; // errno
+};
+
+vpAtomicFile::vpAtomicFile(const std::string &filename)
+    : m_filename(filename), m_target(filename), m_buffer(std::make_unique<Buffer>()), m_stream(m_buffer.get())
 {
   std::error_code ignored;
   const fs::file_status status = fs::status(filename, ignored);
@@ -51,8 +90,7 @@ vpAtomicFile::vpAtomicFile(const std::string &filename) : m_filename(filename), 
   const bool direct = fs::exists(status) && !fs::is_regular_file(status);
   m_written = direct ? m_target : m_target + temporarySuffix();
   errno = 0;
-  m_stream.open(m_written, std::ios::binary | std::ios::trunc);
-  if (!m_stream) {
+  if (m_buffer->open(m_written, std::ios::out | std::ios::binary | std::ios::trunc) == nullptr) {
     const int error = errno;
     m_written.clear();
     fail(error);
@@ -63,7 +101,7 @@ vpAtomicFile::vpAtomicFile(const std::string &filename) : m_filename(filename), 
 vpAtomicFile::~vpAtomicFile()
 {
   if (!m_written.empty() && m_written != m_target) {
-    m_stream.close();
+    m_buffer->close();
     std::error_code ignored;
     fs::remove(m_written, ignored);
   }
@@ -72,12 +110,12 @@ vpAtomicFile::~vpAtomicFile()
 void vpAtomicFile::commit()
 {
   if (m_written.empty()) {
-    throw vpException(vpException::fatalError, m_filename + ": committed twice");
+    throw vpException(vpException::fatalError, vpPrintable(m_filename) + ": committed twice");
   }
   errno = 0;
-  m_stream.close();
-  if (!m_stream) {
-    fail(errno);
+  const bool closed = m_buffer->close() != nullptr;
+  if (!closed || !m_stream) {
+    fail(m_buffer->error() != 0 ? m_buffer->error() : errno);
   }
   std::error_code error;
   if (m_written != m_target) {
@@ -93,7 +131,7 @@ void vpAtomicFile::fail(int error)
 {
   const std::string reason =
       error == 0 ? std::string("unknown error") : std::generic_category().message(error);
-  throw vpException(vpException::ioError, m_filename + ": cannot be written: " + reason);
+  throw vpException(vpException::ioError, vpPrintable(m_filename) + ": cannot be written: " + reason);
 }
 
 END_VISP_NAMESPACE

@@ -17,6 +17,7 @@
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpAtomicFile.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_core/vpReadFile.h>
 
 BEGIN_VISP_NAMESPACE
@@ -62,7 +63,8 @@ struct Element {
 
   [[noreturn]] void fail(const std::string &problem) const
   {
-    throw vpException(vpException::badValue, filename + ":" + std::to_string(xmlGetLineNo(node)) + ": " +
+    throw vpException(vpException::badValue, vpPrintable(filename) + ":" +
+                                                 std::to_string(xmlGetLineNo(node)) + ": " +
                                                  (path.empty() ? "" : path + ": ") + problem);
   }
 
@@ -165,7 +167,8 @@ public:
     const std::unique_ptr<xmlParserCtxt, void (*)(xmlParserCtxt *)> parser(xmlNewParserCtxt(),
                                                                            &xmlFreeParserCtxt);
     if (!parser || bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
-      throw vpException(vpException::ioError, filename + ": too large, expected a camera XML of ViSP");
+      throw vpException(vpException::ioError,
+                        vpPrintable(filename) + ": too large, expected a camera XML of ViSP");
     }
     const int silent = XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_NONET;
     m_document.reset(xmlCtxtReadMemory(parser.get(), bytes.data(), static_cast<int>(bytes.size()), nullptr,
@@ -174,7 +177,7 @@ public:
       const xmlError *error = xmlCtxtGetLastError(parser.get());
       std::string message = error && error->message ? error->message : "no elements";
       message.erase(message.find_last_not_of(" \n") + 1);
-      throw vpException(vpException::badValue, filename + ":" +
+      throw vpException(vpException::badValue, vpPrintable(filename) + ":" +
                                                    std::to_string(error ? std::max(error->line, 1) : 1) +
                                                    ": not XML: " + vpShown(message));
     }
@@ -291,7 +294,7 @@ vpCameraXml vpCameraXml::load(const std::string &filename, const std::string &na
   }
   if (matches.empty()) {
     throw vpException(vpException::badValue,
-                      filename + ": no camera " + quoted(name) +
+                      vpPrintable(filename) + ": no camera " + quoted(name) +
                           ", expected one of those there: " + (names.empty() ? "none" : names));
   }
   if (matches.size() > 1) {
@@ -318,12 +321,17 @@ vpCameraXml vpCameraXml::load(const std::string &filename, const std::string &na
 
 void vpCameraXml::save(const std::string &filename) const
 {
+  if (vpPrintable(name) != name) { // XML has no way to write control characters
+    throw vpException(vpException::badValue, vpPrintable(filename) + ": camera.name: " + vpShown(name) +
+                                                 ", expected text on one line");
+  }
   std::error_code none;
   if (std::filesystem::is_regular_file(filename, none)) {
     if (Document(filename).cameras().size() > 1) {
       throw vpException(vpException::ioError,
-                        filename + ": holds other cameras, which would be lost; expected camera " +
-                            quoted(name) + " alone");
+                        vpPrintable(filename) +
+                            ": holds other cameras, which would be lost; expected camera " + quoted(name) +
+                            " alone");
     }
     if (xmlOf(load(filename, name)) == xmlOf(*this)) {
       return;

@@ -4,10 +4,12 @@
  */
 #include <visp3/vlp_core/vpCsvTable.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_core/vpReadFile.h>
 
 BEGIN_VISP_NAMESPACE
@@ -16,7 +18,8 @@ namespace
 {
 [[noreturn]] void failAt(const std::string &filename, size_t line, const std::string &problem)
 {
-  throw vpException(vpException::badValue, filename + ":" + std::to_string(line) + ": " + problem);
+  throw vpException(vpException::badValue,
+                    vpPrintable(filename) + ":" + std::to_string(line) + ": " + problem);
 }
 
 std::string joined(const std::vector<std::string> &columns)
@@ -121,7 +124,8 @@ void vpCsvTable::fail(size_t row, size_t column, const std::string &problem) con
 
 std::string vpCsvTable::field(const std::string &text)
 {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
+  const auto isControl = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (text.find_first_of(",\"") == std::string::npos && std::none_of(text.begin(), text.end(), isControl)) {
     return text;
   }
   std::string quoted = "\"";
@@ -129,7 +133,7 @@ std::string vpCsvTable::field(const std::string &text)
     if (c == '"') {
       quoted += '"';
     }
-    quoted += c == '\n' || c == '\r' ? ' ' : c; // a row is a line
+    quoted += isControl(c) ? ' ' : c; // a row is a line
   }
   return quoted + "\"";
 }

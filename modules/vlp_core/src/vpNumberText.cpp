@@ -7,7 +7,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
+
+#include <visp3/vlp_core/vpPrintable.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -54,18 +55,15 @@ bool vpParseNumber(const std::string &text, double &value)
 std::string vpShown(const std::string &text)
 {
   constexpr size_t longest = 80;
-  std::string shown;
-  for (const char c : text.substr(0, longest)) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      std::array<char, 8> escape;
-      std::snprintf(escape.data(), escape.size(), "\\x%02x",
-                    static_cast<unsigned int>(static_cast<unsigned char>(c)));
-      shown += escape.data();
-    } else {
-      shown += c;
-    }
+  if (text.size() <= longest) {
+    return vpPrintable(text);
   }
-  return text.size() > longest ? shown + "..." : shown;
+  size_t end = longest;
+  while (end > longest - 4 &&
+         (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) { // inside a character of UTF-8
+    --end;
+  }
+  return vpPrintable(text.substr(0, end)) + "...";
 }
 
 END_VISP_NAMESPACE

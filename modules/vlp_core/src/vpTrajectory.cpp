@@ -13,6 +13,7 @@
 #include <visp3/vlp_core/vpAtomicFile.h>
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpPoseText.h>
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_core/vpReadFile.h>
 
 BEGIN_VISP_NAMESPACE
@@ -28,7 +29,7 @@ class Row
 {
 public:
   Row(const std::string &filename, size_t line, const std::string &text)
-      : m_place(filename + ":" + std::to_string(line) + ": ")
+      : m_place(vpPrintable(filename) + ":" + std::to_string(line) + ": ")
   {
     std::istringstream words(text);
     for (std::string word; words >> word;) {

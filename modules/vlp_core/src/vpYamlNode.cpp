@@ -13,6 +13,7 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_core/vpReadFile.h>
 
 BEGIN_VISP_NAMESPACE
@@ -28,7 +29,7 @@ struct Entry {
 [[noreturn]] void failAt(const std::string &filename, int line, const std::string &message)
 {
   const std::string place = line > 0 ? ":" + std::to_string(line) : "";
-  throw vpException(vpException::badValue, filename + place + ": " + message);
+  throw vpException(vpException::badValue, vpPrintable(filename) + place + ": " + message);
 }
 
 //! yaml-cpp counts lines from 0, and gives -1 where it knows none.

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <utility>
 
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_evaluation/vpReportTable.h>
 
 BEGIN_VISP_NAMESPACE
@@ -54,25 +55,12 @@ h3 { font-size: 1rem; margin: 0 0 0.25rem; }
 //! Bytes of the UTF-8 character that begins at \e i; 0 where none does that XML allows.
 size_t characterAt(const std::string &text, size_t i)
 {
-  const auto byte = [&text](size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
-  const unsigned int first = byte(i);
-  if (first < 0x80) {
-    return first >= 0x20 && first != 0x7f ? 1 : 0;
-  }
-  if (first < 0xC2 || first > 0xF4) {
-    return 0;
-  }
-  const size_t length = first < 0xE0 ? 2 : (first < 0xF0 ? 3 : 4);
-  for (size_t k = 1; k < length; ++k) {
-    if ((byte(i + k) & 0xC0) != 0x80) {
-      return 0;
-    }
-  }
-  const unsigned int second = byte(i + 1), third = byte(i + 2);
-  const bool tooLong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool beyond = (first == 0xED && second >= 0xA0) || (first == 0xF4 && second >= 0x90);
-  const bool noCharacter = first == 0xEF && second == 0xBF && third >= 0xBE;
-  return tooLong || beyond || noCharacter ? 0 : length;
+  const size_t length = vpUtf8Length(text, i);
+  const unsigned char first = static_cast<unsigned char>(text[i]);
+  const bool control = length == 1 && (first < 0x20 || first == 0x7f);
+  const bool noCharacter =
+      length == 3 && text.compare(i, 2, "\xEF\xBF") == 0 && static_cast<unsigned char>(text[i + 2]) >= 0xBE;
+  return control || noCharacter ? 0 : length;
 }
 
 //! \e text as text of the page: no markup, no control characters, valid UTF-8.

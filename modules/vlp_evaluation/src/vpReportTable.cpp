@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <visp3/vlp_core/vpPrintable.h>
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -168,13 +170,16 @@ std::string vpReportTable::text() const
   if (headed) {
     lines.insert(lines.begin(), columns);
   }
+  for (std::vector<std::string> &line : lines) {
+    std::transform(line.begin(), line.end(), line.begin(), vpPrintable); // ids and names are among them
+  }
   std::vector<size_t> widths(columns.size(), 0);
   for (const std::vector<std::string> &line : lines) {
     for (size_t i = 0; i < line.size(); ++i) {
       widths[i] = std::max(widths[i], widthOf(line[i]));
     }
   }
-  std::string text = heading + "\n";
+  std::string text = vpPrintable(heading) + "\n";
   for (const std::vector<std::string> &line : lines) {
     text += "  " + line[0] + std::string(widths[0] - widthOf(line[0]), ' ');
     for (size_t i = 1; i < line.size(); ++i) {

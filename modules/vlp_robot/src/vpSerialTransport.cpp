@@ -98,6 +98,9 @@ bool vpSerialTransport::write(const std::uint8_t *bytes, size_t size, double dea
     if (written < 0 && errno != EAGAIN && errno != EINTR) {
       fail("cannot be written to", errno);
     }
+    if (written <= 0 && now() >= deadline) { // though it was said to be ready
+      return false;
+    }
     const size_t taken = static_cast<size_t>(std::max<ssize_t>(written, 0));
     bytes += taken;
     size -= taken;
@@ -117,6 +120,9 @@ size_t vpSerialTransport::read(std::uint8_t *bytes, size_t most, double deadline
     }
     if (errno != EAGAIN && errno != EINTR) {
       fail("is gone", errno);
+    }
+    if (now() >= deadline) { // though it was said to be ready
+      break;
     }
   }
   return 0;

@@ -303,10 +303,10 @@ private:
     return true;
   }
 
+  std::atomic<bool> m_lost{false}; // set by a thread of the camera's: it outlives that
   Owned<ArvCamera> m_camera;
   Owned<ArvStream> m_stream;
   gulong m_lostHandler = 0;
-  std::atomic<bool> m_lost{false}; // set by Aravis' own thread
   bool m_numbered = false;
   guint64 m_number = 0; // of the frame before
   vpClockMap m_clock;

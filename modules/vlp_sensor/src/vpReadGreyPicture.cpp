@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_core/vpReadFile.h>
 
 #include "vpGreyOf.h"
@@ -80,7 +81,7 @@ bool isWholePng(const std::string &bytes)
 
 [[noreturn]] void fail(const std::string &filename, const std::string &problem)
 {
-  throw vpException(vpException::ioError, filename + ": " + problem);
+  throw vpException(vpException::ioError, vpPrintable(filename) + ": " + problem);
 }
 } // namespace
 

@@ -16,6 +16,7 @@
 #include <opencv2/videoio/registry.hpp>
 
 #include <visp3/core/vpException.h>
+#include <visp3/vlp_core/vpPrintable.h>
 
 #include "vpGreyOf.h"
 
@@ -25,7 +26,7 @@ namespace
 {
 [[noreturn]] void fail(const std::string &filename, const std::string &problem)
 {
-  throw vpException(vpException::ioError, filename + ": " + problem);
+  throw vpException(vpException::ioError, vpPrintable(filename) + ": " + problem);
 }
 
 //! FFmpeg where OpenCV has it: the others complain on stderr about each other before they give up.

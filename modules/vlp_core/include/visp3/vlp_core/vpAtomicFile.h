@@ -5,7 +5,8 @@
 #ifndef vpAtomicFile_h
 #define vpAtomicFile_h
 
-#include <fstream>
+#include <memory>
+#include <ostream>
 #include <string>
 
 #include <visp3/vlp_core/vpVlpNamespace.h>
@@ -40,12 +41,15 @@ public:
   void commit();
 
 private:
+  class Buffer;
+
   [[noreturn]] void fail(int error);
 
   std::string m_filename; // as given, for messages
   std::string m_target;   // where links lead
   std::string m_written;  // name under which it is being written; empty once committed
-  std::ofstream m_stream;
+  std::unique_ptr<Buffer> m_buffer;
+  std::ostream m_stream; // into the buffer
 };
 
 END_VISP_NAMESPACE
