@@ -93,6 +93,44 @@ Lamp lampAt(double x, double y, double distance, double tiltDeg, double azimuthD
 }
 } // namespace
 
+TEST(LampOutline, LinesEndOnAnEllipse)
+{
+  vpLampOutline outline;
+  outline.shape = vpLampOutline::Shape::ellipse;
+  outline.centre = {40, 30};
+  outline.a = 20;
+  outline.b = 8;
+  outline.angle = 0.4;
+  const Eigen::Rotation2Dd turn(-outline.angle);
+  const Eigen::Vector4d box = outline.box();
+  const vpOutlineLines across(outline);
+  double first, last;
+  for (double v = box(1) + 0.01; v < box(3); v += 0.5) {
+    ASSERT_TRUE(across.stretch(v, first, last)) << v;
+    EXPECT_LT(first, last);
+    for (double u : {first, last}) {
+      const Eigen::Vector2d at = turn * (Eigen::Vector2d(u, v) - outline.centre);
+      EXPECT_NEAR(std::hypot(at.x() / outline.a, at.y() / outline.b), 1, 1e-9) << u << ", " << v;
+    }
+  }
+  EXPECT_FALSE(across.stretch(box(1) - 0.01, first, last));
+  EXPECT_FALSE(across.stretch(box(3) + 0.01, first, last));
+}
+
+TEST(LampOutline, LinesEndOnTheSidesOfAQuadrilateral)
+{
+  vpLampOutline outline;
+  outline.shape = vpLampOutline::Shape::quadrilateral;
+  outline.corners = {Eigen::Vector2d(10, 0), Eigen::Vector2d(20, 10), Eigen::Vector2d(10, 20),
+                     Eigen::Vector2d(0, 10)};
+  const vpOutlineLines across(outline);
+  double first, last;
+  ASSERT_TRUE(across.stretch(5, first, last));
+  EXPECT_DOUBLE_EQ(first, 5);
+  EXPECT_DOUBLE_EQ(last, 15);
+  EXPECT_FALSE(across.stretch(20.5, first, last));
+}
+
 TEST(LampOutline, MiddleOfATiltedDiskIsNotTheMiddleOfItsEllipse)
 {
   const vpCameraParameters camera(280, 280, 320, 240);
