@@ -290,7 +290,7 @@ TEST_F(Faults, Servo)
 
 TEST_F(Faults, SlowEachCallOfEachProgram)
 {
-  constexpr int more = 20; // than any of them makes of a kind, but for vlp-evaluate
+  constexpr int more = 8; // than most of them make of a kind; a program runs once for each
   for (const Writer &writer :
        {simulate(), locate(), overlay(), evaluate(), plan(), shutter(), board(), servo()}) {
     tryAll(writer, more);
