@@ -60,6 +60,12 @@ TEST(FaultSequences, FenceHoldsBetweenTwoPictures)
   EXPECT_GT(farthest, 0.2); // else the test tests nothing
 }
 
+// Torn pictures while the camera's clock jumps there and back: a first pose of two lamps that are not where
+// the picture has them, and sizes of lamps as seen from there.
+TEST(FaultSequences, AWrongFirstPoseIsNotKept)
+{
+  EXPECT_EQ(vpFaultSequence(14591).broken, "");
+}
 TEST(FaultSequences, NoneMovesTheRobotBeyondItsLimits)
 {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {

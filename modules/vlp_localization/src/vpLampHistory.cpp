@@ -39,7 +39,7 @@ const vpLampHistory::Past *vpLampHistory::find(const vpLamp &lamp) const
 }
 
 std::string vpLampHistory::changed(const vpLamp &lamp, const vpLampObservation &seen,
-                                   const vpLampExtent &expected)
+                                   const vpLampExtent &expected, double scale)
 {
   const auto found = m_past.find(lamp.id);
   if (found == m_past.end() || found->second.sizes < known || seen.cut || !(expected.size.minCoeff() > 0)) {
@@ -48,7 +48,7 @@ std::string vpLampHistory::changed(const vpLamp &lamp, const vpLampObservation &
   Past &past = found->second;
   static const double coarse = 0.15; // px
   static const int patience = 60;    // frames in a row, after which a lamp is of another size for good
-  const Eigen::Vector2d size = relativeSize(seen.outline, expected);
+  const Eigen::Vector2d size = relativeSize(seen.outline, expected) / scale;
   const Eigen::Vector2d tolerance =
       (sizeTolerance + gate * expected.stretch) * past.size + coarse * expected.size.cwiseInverse();
   const Eigen::Vector2d more = (size - past.size).cwiseQuotient(tolerance);
@@ -69,13 +69,26 @@ bool vpLampHistory::looksAsBefore(const vpLampFrame &frame, const vpHomogeneousM
   const vpBasePose base = vpBasePose::of(wMb);
   vpLampHistory asked = *this;       // which counts how often it is asked
   static const double moving = 0.01; // stretch of a lamp by an unknown velocity, standard deviation
-  return std::all_of(frame.lamps.begin(), frame.lamps.end(), [&](const vpFrameLamp &lamp) {
+  const auto expected = [&](const vpFrameLamp &lamp) {
     const vpLampPicture picture(*lamp.lamp, base, *frame.rig);
-    return !lamp.seen->accepted ||
-           asked
-               .changed(*lamp.lamp, *lamp.seen,
-                        {picture.extent(Eigen::Vector3d::Zero(), frame.lineTime), moving})
-               .empty();
+    return vpLampExtent{picture.extent(Eigen::Vector3d::Zero(), frame.lineTime), moving};
+  };
+  // What all lamps are larger or smaller by the places may have been wrong by from which they were seen
+  // before.
+  double logs = 0;
+  int lamps = 0;
+  for (const vpFrameLamp &lamp : frame.lamps) {
+    const Past *past = find(*lamp.lamp);
+    const vpLampExtent extent = expected(lamp);
+    if (lamp.seen->accepted && past != nullptr && past->sizes >= known && !lamp.seen->cut &&
+        extent.size.minCoeff() > 0) {
+      logs += relativeSize(lamp.seen->outline, extent).cwiseQuotient(past->size).array().log().mean();
+      ++lamps;
+    }
+  }
+  const double scale = lamps > 1 ? std::exp(logs / lamps) : 1;
+  return std::all_of(frame.lamps.begin(), frame.lamps.end(), [&](const vpFrameLamp &lamp) {
+    return !lamp.seen->accepted || asked.changed(*lamp.lamp, *lamp.seen, expected(lamp), scale).empty();
   });
 }
 
