@@ -250,49 +250,27 @@ protected:
             true};
   }
 
+  std::vector<Writer> writers() const
+  {
+    return {simulate(), locate(), overlay(), evaluate(), plan(), shutter(), board(), servo()};
+  }
+
 private:
   vpTemporaryFolder m_inputs;
 };
 } // namespace
 
-TEST_F(Faults, Simulate)
+TEST_F(Faults, FirstCallOfEachProgram)
 {
-  tryAll(simulate(), 1);
-}
-TEST_F(Faults, Locate)
-{
-  tryAll(locate(), 1);
-}
-TEST_F(Faults, LocateOverlay)
-{
-  tryAll(overlay(), 1);
-}
-TEST_F(Faults, Evaluate)
-{
-  tryAll(evaluate(), 1);
-}
-TEST_F(Faults, Plan)
-{
-  tryAll(plan(), 1);
-}
-TEST_F(Faults, CalibrateShutter)
-{
-  tryAll(shutter(), 1);
-}
-TEST_F(Faults, CalibrateCamera)
-{
-  tryAll(board(), 1);
-}
-TEST_F(Faults, Servo)
-{
-  tryAll(servo(), 1);
+  for (const Writer &writer : writers()) {
+    tryAll(writer, 1);
+  }
 }
 
 TEST_F(Faults, SlowEachCallOfEachProgram)
 {
   constexpr int more = 8; // than most of them make of a kind; a program runs once for each
-  for (const Writer &writer :
-       {simulate(), locate(), overlay(), evaluate(), plan(), shutter(), board(), servo()}) {
+  for (const Writer &writer : writers()) {
     tryAll(writer, more);
   }
 }

@@ -25,6 +25,14 @@ Eigen::Vector2d relativeSize(const vpLampOutline &outline, const vpLampExtent &e
   return (box.tail<2>() - box.head<2>()).cwiseQuotient(expected.size);
 }
 
+//! Of a lamp as seen by a robot that may move.
+vpLampExtent extentFrom(const vpLampFrame &frame, const vpFrameLamp &lamp, const vpHomogeneousMatrix &wMb)
+{
+  static const double moving = 0.01; // stretch of a lamp by an unknown velocity, standard deviation
+  const vpLampPicture picture(*lamp.lamp, vpBasePose::of(wMb), *frame.rig);
+  return {picture.extent(Eigen::Vector3d::Zero(), frame.lineTime), moving};
+}
+
 //! Of the latest of \e frames in a running mean, which is slower than people walk.
 double shareOf(int frames)
 {
@@ -39,7 +47,7 @@ const vpLampHistory::Past *vpLampHistory::find(const vpLamp &lamp) const
 }
 
 std::string vpLampHistory::changed(const vpLamp &lamp, const vpLampObservation &seen,
-                                   const vpLampExtent &expected, double scale)
+                                   const vpLampExtent &expected)
 {
   const auto found = m_past.find(lamp.id);
   if (found == m_past.end() || found->second.sizes < known || seen.cut || !(expected.size.minCoeff() > 0)) {
@@ -48,7 +56,7 @@ std::string vpLampHistory::changed(const vpLamp &lamp, const vpLampObservation &
   Past &past = found->second;
   static const double coarse = 0.15; // px
   static const int patience = 60;    // frames in a row, after which a lamp is of another size for good
-  const Eigen::Vector2d size = relativeSize(seen.outline, expected) / scale;
+  const Eigen::Vector2d size = relativeSize(seen.outline, expected);
   const Eigen::Vector2d tolerance =
       (sizeTolerance + gate * expected.stretch) * past.size + coarse * expected.size.cwiseInverse();
   const Eigen::Vector2d more = (size - past.size).cwiseQuotient(tolerance);
@@ -64,31 +72,34 @@ std::string vpLampHistory::changed(const vpLamp &lamp, const vpLampObservation &
   return smaller ? "not as large as it was: partly hidden" : larger ? "larger than it was" : "";
 }
 
-bool vpLampHistory::looksAsBefore(const vpLampFrame &frame, const vpHomogeneousMatrix &wMb) const
+void vpLampHistory::seeFrom(const vpLampFrame &frame, const vpHomogeneousMatrix &wMb)
 {
-  const vpBasePose base = vpBasePose::of(wMb);
-  vpLampHistory asked = *this;       // which counts how often it is asked
-  static const double moving = 0.01; // stretch of a lamp by an unknown velocity, standard deviation
-  const auto expected = [&](const vpFrameLamp &lamp) {
-    const vpLampPicture picture(*lamp.lamp, base, *frame.rig);
-    return vpLampExtent{picture.extent(Eigen::Vector3d::Zero(), frame.lineTime), moving};
-  };
-  // What all lamps are larger or smaller by the places may have been wrong by from which they were seen
-  // before.
   double logs = 0;
   int lamps = 0;
   for (const vpFrameLamp &lamp : frame.lamps) {
     const Past *past = find(*lamp.lamp);
-    const vpLampExtent extent = expected(lamp);
+    const vpLampExtent extent = extentFrom(frame, lamp, wMb);
     if (lamp.seen->accepted && past != nullptr && past->sizes >= known && !lamp.seen->cut &&
         extent.size.minCoeff() > 0) {
       logs += relativeSize(lamp.seen->outline, extent).cwiseQuotient(past->size).array().log().mean();
       ++lamps;
     }
   }
-  const double scale = lamps > 1 ? std::exp(logs / lamps) : 1;
+  if (lamps < 2) {
+    return; // one lamp alone may be partly hidden
+  }
+  for (auto &[id, past] : m_past) {
+    past.size *= std::exp(logs / lamps);
+  }
+}
+
+bool vpLampHistory::looksAsBefore(const vpLampFrame &frame, const vpHomogeneousMatrix &wMb) const
+{
+  vpLampHistory there = *this; // which counts, too, how often it is asked
+  there.seeFrom(frame, wMb);
   return std::all_of(frame.lamps.begin(), frame.lamps.end(), [&](const vpFrameLamp &lamp) {
-    return !lamp.seen->accepted || asked.changed(*lamp.lamp, *lamp.seen, expected(lamp), scale).empty();
+    return !lamp.seen->accepted ||
+           there.changed(*lamp.lamp, *lamp.seen, extentFrom(frame, lamp, wMb)).empty();
   });
 }
 

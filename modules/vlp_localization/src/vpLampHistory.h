@@ -37,11 +37,11 @@ public:
   double gate = 4;              // standard deviations, of its extent
 
   //! Empty where a lamp is as large and of the shape as before; else why not, in a few words.
-  //! \param scale By which all lamps look larger.
-  std::string changed(const vpLamp &lamp, const vpLampObservation &seen, const vpLampExtent &expected,
-                      double scale = 1);
-  //! Whether the lamps of a frame that are accepted look from \e wMb as large as before, each or all by the
-  //! same share larger or smaller.
+  std::string changed(const vpLamp &lamp, const vpLampObservation &seen, const vpLampExtent &expected);
+  //! The robot is at \e wMb: what the accepted lamps look larger by, all alike, is an error of the places
+  //! from which they were seen before.
+  void seeFrom(const vpLampFrame &frame, const vpHomogeneousMatrix &wMb);
+  //! Whether the accepted lamps of a frame look from \e wMb as large as before, but for such an error.
   bool looksAsBefore(const vpLampFrame &frame, const vpHomogeneousMatrix &wMb) const;
   //! m, how far a lamp may seem to be from where the filter expects it, standard deviation.
   double tolerance(const vpLamp &lamp) const;

@@ -109,6 +109,7 @@ vpPoseHypothesis vpVlpLocalizer::placeAt(const vpVlpFix &fix, const vpLampFrame 
   }
   vpLampHistory lamps = m_places->lamps();
   lamps.mapTolerance = mapTolerance;
+  lamps.seeFrom(frame, fix.wMb);
   for (const vpFrameLamp &lamp : frame.lamps) {
     if (lamp.seen->accepted || lamp.seen->remark == vpLampConsensus::elsewhere) {
       lamps.setStranger(*lamp.lamp, !lamp.seen->accepted);
