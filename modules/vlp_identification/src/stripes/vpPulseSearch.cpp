@@ -46,7 +46,8 @@ bool asStated(const vpWaveformFit &fit, const vpStripeProfile &profile)
 
 vpPulseSearch::vpPulseSearch(const vpStripeProfile &profile, std::vector<double> envelope, int order,
                              const vpStripeAnalyzer &analyzer)
-    : m_profile(&profile), m_envelope(std::move(envelope)), m_slowest(analyzer.minFrequency)
+    : m_profile(&profile), m_envelope(std::move(envelope)), m_slowest(analyzer.minFrequency),
+      m_maxMisfit(analyzer.maxMisfit)
 {
   settings.modelError = analyzer.modelError;
   settings.exposureTolerance = analyzer.exposureTolerance;
@@ -99,7 +100,14 @@ const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
   return *m_candidates;
 }
 
-std::optional<vpWaveformFit> vpPulseSearch::onePulse()
+//! Whether its frequency is that of the likeliest sinusoid.
+bool vpPulseSearch::isLikeliest(const vpWaveformFit &fit)
+{
+  const double span = std::abs(m_profile->time.back() - m_profile->time.front());
+  return std::abs(fit.value(vpWaveformFit::frequency) - candidates().front().frequency) * span < 1;
+}
+
+std::optional<vpWaveformFit> vpPulseSearch::onePulse(double explained)
 {
   std::optional<vpWaveformFit> best;
   if (m_pulses) {
@@ -122,6 +130,11 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse()
     return best;
   }
   for (const vpStripeStarts::Sinusoid &candidate : candidates()) {
+    // Where a start has led to most of the stripes, others lead there, too, or to less of them; but lines
+    // that leave gaps may show the edges of every other pulse alone.
+    if (best && std::min(explained, best->misfit()) < m_maxMisfit && isLikeliest(*best)) {
+      break;
+    }
     std::optional<vpWaveformFit> found;
     for (double exposure : exposuresOf(*m_profile, candidate.frequency)) {
       for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {

@@ -47,15 +47,18 @@ public:
     return twoPulse ? vpStripeStarts::pairsOfPulses(m_edges).has_value() : m_pulses.has_value();
   }
 
-  std::optional<vpWaveformFit> onePulse();
+  //! \param explained Misfit of the best fit so far, with another envelope.
+  std::optional<vpWaveformFit> onePulse(double explained = 1);
   std::optional<vpWaveformFit> twoPulses();
 
 private:
+  bool isLikeliest(const vpWaveformFit &fit);
   void takePulses(const std::vector<vpStripeStarts::Edge> &edges);
 
   const vpStripeProfile *m_profile;
   std::vector<double> m_envelope;
-  double m_slowest; // Hz
+  double m_slowest;   // Hz
+  double m_maxMisfit; // of a lamp
   std::vector<vpStripeStarts::Edge> m_edges;
   std::optional<vpStripeStarts::Pulses> m_pulses;
   bool m_gap = false;      // all that shows is parts of two stripes and the gap between them

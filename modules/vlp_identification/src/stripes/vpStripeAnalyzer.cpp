@@ -266,7 +266,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   std::optional<vpWaveformFit> pwm = byAll.onePulse();
   const auto explained = [&pwm] { return pwm && pwm->misfit() < vpPulseSearch::allExplained; };
   const auto alsoFrom = [&](vpPulseSearch &search) {
-    std::optional<vpWaveformFit> other = search.onePulse();
+    std::optional<vpWaveformFit> other = search.onePulse(pwm ? pwm->misfit() : 1);
     if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);
       start = &search;
@@ -292,7 +292,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   if (pwm && pwm->misfit() > vpPulseSearch::allExplained &&
       showsSharpening(profile, pwm->value(vpWaveformFit::frequency))) {
     start->settings.sharpened = true;
-    std::optional<vpWaveformFit> other = start->onePulse();
+    std::optional<vpWaveformFit> other = start->onePulse(pwm->misfit());
     static const double clearly = 0.5;
     if (other && other->misfit() < clearly * pwm->misfit()) {
       pwm = std::move(other);
