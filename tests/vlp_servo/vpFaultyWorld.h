@@ -90,6 +90,16 @@ public:
     return found == m_faults.end() ? nullptr : &*found;
   }
 
+  //! The clock that loop, odometry and camera share, at a time of the world.
+  double host(double time) const
+  {
+    double shown = time;
+    for (const vpServoFault &one : m_faults) {
+      shown += one.kind == vpServoFault::Kind::clock && time >= one.from ? one.size : 0;
+    }
+    return shown;
+  }
+
   // vpServoClock
   double period() const override { return 0.02; }
   double now() override { return host(world()); }
@@ -178,16 +188,6 @@ private:
     if (fault(unless) != nullptr) {
       throw vpException(vpException::ioError, "base: no answer");
     }
-  }
-
-  //! The clock that loop, odometry and camera share, at a time of the world.
-  double host(double time) const
-  {
-    double shown = time;
-    for (const vpServoFault &one : m_faults) {
-      shown += one.kind == vpServoFault::Kind::clock && time >= one.from ? one.size : 0;
-    }
-    return shown;
   }
 
   vpOdometry sampleAt(double time) const
