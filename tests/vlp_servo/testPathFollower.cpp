@@ -254,3 +254,22 @@ TEST(PathFollower, BadSettingsAreNamed)
   vpExpectError([&settings] { vpPathFollower follower(longLine, vpTurtleBot3().limits(), settings); },
                 {"error slowest: 0.01"});
 }
+
+//! A base whose pose turns out to be past the end is not there before it has driven back.
+TEST(PathFollower, DrivesBackFromBeyondTheEnd)
+{
+  const vpPathFollowerSettings settings;
+  vpPerfectBase base;
+  vpPathFollower follower(longLine, base.limits(), settings);
+  while (!follower.atEnd()) {
+    const vpBaseVelocity velocity = follower.follow(base.wMb, 1, base.period());
+    base.setVelocity(velocity.v, velocity.w);
+    base.next();
+  }
+  base.wMb = vpStanding(3.06, 0, 0);
+  EXPECT_LT(follower.follow(base.wMb, 1, base.period()).v, 0);
+  EXPECT_FALSE(follower.arrived());
+  follow(longLine, base, follower);
+  EXPECT_TRUE(follower.arrived());
+  EXPECT_NEAR(base.x(), 3, settings.endTolerance);
+}

@@ -85,7 +85,7 @@ vpBaseVelocity vpPathFollower::follow(const vpHomogeneousMatrix &wMb, double sha
     return m_servo.velocity(wMb, onTheSpot, 0);
   }
   const vpBaseVelocity velocity = m_servo.velocity(wMb, reference, integrated);
-  m_arrived = m_reference.arrived() && m_servo.error().x() < m_settings.endTolerance;
+  m_arrived = m_reference.arrived() && std::abs(m_servo.error().x()) < m_settings.endTolerance;
   return m_arrived ? vpBaseVelocity() : velocity;
 }
 

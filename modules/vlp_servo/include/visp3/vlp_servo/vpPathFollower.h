@@ -18,7 +18,7 @@ struct VISP_EXPORT vpPathFollowerSettings {
   double slowestShare = 0.2;
   double turnFirst = 1;        // rad off the path's heading, from which on the base first turns on the spot
   double turnTolerance = 0.01; // rad, to which it turns before it drives on
-  double endTolerance = 0.003; // m along the path, to which it drives to the end
+  double endTolerance = 0.003; // m along the path, to which it drives to the end, or back to it
 
   //! \throw vpException (badValue) with one line: the field, what came and what was expected.
   void check() const;
