@@ -92,10 +92,11 @@ void vpLampTracker::reacquire(const vpImage<unsigned char> &I)
 void vpLampTracker::search(const vpVlpFrame &frame)
 {
   static const double halo = 0.1, beyond = 4; // of a lamp's extent; px
-  std::vector<vpRect> &known = m_scratch->known, &open = m_scratch->open,
-                      &knownOrSteady = m_scratch->knownOrSteady;
+  std::vector<vpRect> &known = m_scratch->known, &open = m_scratch->open, &steady = m_scratch->steady,
+                      &light = m_scratch->light;
   known.clear();
   open.clear();
+  steady.clear();
   double noise = 0; // grey levels
   for (const vpLampObservation &lamp : m_observations) {
     const vpRect box = boxOf(lamp.outline);
@@ -103,35 +104,59 @@ void vpLampTracker::search(const vpVlpFrame &frame)
     known.push_back(widened(box, wider));
     noise = std::max(noise, lamp.noise);
   }
-  knownOrSteady = known;
-  for (const Steady &steady : m_steady) {
-    knownOrSteady.push_back(steady.box);
+  for (const Steady &each : m_steady) {
+    if (each.until >= frame.timestamp) {
+      steady.push_back(each.box);
+    }
   }
+  // Where a lamp is expected, what told nothing of one may be a part of it.
+  auto forgetSteadyIn = [&steady](const vpRect &place) {
+    steady.erase(std::remove_if(steady.begin(), steady.end(),
+                                [&place](const vpRect &box) { return overlap(box, place) > 0; }),
+                 steady.end());
+  };
   auto shown = [this](const vpRect &window) { // the lamp that is expected there
     return std::any_of(m_observations.begin(), m_observations.end(),
                        [&window](const vpLampObservation &lamp) {
                          return window.isInside({lamp.outline.centre.y(), lamp.outline.centre.x()});
                        });
   };
-  for (size_t w = 0; w < m_searched.size(); ++w) {
-    const bool strip = w + 1 == m_searched.size(), target = w < m_tracks.size();
-    const bool found = target ? m_tracks[w].taken : !strip && shown(m_searched[w]);
-    // Where a lamp is expected, what told nothing of one may be a part of it.
-    if (!found &&
-        (target || known.empty() ||
-         vpLedRoiDetector::showsMore(frame.I, m_searched[w], strip ? knownOrSteady : known, noise))) {
-      open.push_back(m_searched[w]);
+  const size_t strip = m_searched.size() - 1;
+  for (size_t w = 0; w < strip; ++w) {
+    static const double middle = -0.25; // of an expected window, which the lamp fills
+    const bool target = w < m_tracks.size();
+    if (target ? m_tracks[w].taken : shown(m_searched[w])) {
+      continue;
     }
+    if (!target && !known.empty()) {
+      vpLedRoiDetector::otherLight(frame.I, m_searched[w], known, noise, light);
+      if (light.empty()) {
+        continue;
+      }
+    }
+    open.push_back(m_searched[w]);
+    forgetSteadyIn(target ? m_tracks[w].window : widened(m_searched[w], middle));
   }
+  known.insert(known.end(), steady.begin(), steady.end());
+  vpLedRoiDetector::otherLight(frame.I, m_searched[strip], known, noise, light);
+  double area = 0; // that may have to be looked at for so many
+  for (const vpRect &box : light) {
+    area += std::pow(3 * std::max(box.getWidth(), box.getHeight()), 2);
+  }
+  if (area > m_searched[strip].getWidth() * m_searched[strip].getHeight()) {
+    light.assign(1, m_searched[strip]);
+  }
+  open.insert(open.end(), light.begin(), light.end());
   if (open.empty()) {
     return;
   }
-  detector.detect(frame.I, open);
+  detector.detect(frame.I, open, known);
+  const size_t reacquired = m_observations.size();
   for (const vpLampObservation &seen : detector.observations()) {
     const vpImagePoint middle(seen.outline.centre.y(), seen.outline.centre.x());
     const vpRect box = boxOf(seen.outline);
     const bool twice =
-        std::any_of(m_observations.begin(), m_observations.begin() + static_cast<long>(known.size()),
+        std::any_of(m_observations.begin(), m_observations.begin() + static_cast<long>(reacquired),
                     [&](const vpLampObservation &lamp) {
                       static const double same = 0.3;
                       const vpRect other = boxOf(lamp.outline);
@@ -164,47 +189,49 @@ void vpLampTracker::searchAll(const vpVlpFrame &frame)
 }
 
 /*!
-  Steady regions move in the picture as the lamps do: by the similarity that takes these from the frame before
-  to this one. What hangs higher or lower soon leaves its box, is seen there, and remembered anew.
+  Steady regions move in the picture as the lamps do that were reacquired, or as all targets where none was:
+  by the similarity that takes these from the frame before to this one. What hangs higher or lower soon leaves
+  its box, is seen there, and remembered anew.
 */
 void vpLampTracker::moveSteady(double time)
 {
   using Complex = std::complex<double>;
-  if (m_observations.empty()) {
+  std::vector<std::pair<Complex, Complex>> moves; // px, from where to where
+  auto at = [](const vpImagePoint &point) { return Complex(point.get_u(), point.get_v()); };
+  for (const Track &track : m_tracks) {
+    if (track.taken) {
+      const Eigen::Vector2d &centre = track.seen.outline.centre;
+      moves.emplace_back(at(track.place.getCenter()), Complex(centre.x(), centre.y()));
+    } else if (m_observations.empty() && !track.astray) {
+      moves.emplace_back(at(track.before), at(track.target->center()));
+    }
+  }
+  if (moves.empty()) {
     m_steady.clear(); // who knows where they are
     return;
   }
-  auto beforeOf = [this](size_t i) {
-    const vpImagePoint centre = m_tracks[static_cast<size_t>(m_trackOf[i])].place.getCenter();
-    return Complex(centre.get_u(), centre.get_v());
-  };
-  auto nowOf = [this](size_t i) {
-    const Eigen::Vector2d &centre = m_observations[i].outline.centre;
-    return Complex(centre.x(), centre.y());
-  };
-  const auto count = static_cast<double>(m_observations.size());
+  const auto count = static_cast<double>(moves.size());
   Complex from = 0, to = 0, products = 0;
   double squares = 0;
-  for (size_t i = 0; i < m_observations.size(); ++i) {
-    from += beforeOf(i) / count;
-    to += nowOf(i) / count;
+  for (const auto &[before, now] : moves) {
+    from += before / count;
+    to += now / count;
   }
-  for (size_t i = 0; i < m_observations.size(); ++i) {
-    products += std::conj(beforeOf(i) - from) * (nowOf(i) - to);
-    squares += std::norm(beforeOf(i) - from);
+  for (const auto &[before, now] : moves) {
+    products += std::conj(before - from) * (now - to);
+    squares += std::norm(before - from);
   }
   const Complex turn = squares > 0 ? products / squares : 1;
   for (Steady &steady : m_steady) {
-    const vpImagePoint centre = steady.box.getCenter();
-    const Complex moved = to + turn * (Complex(centre.get_u(), centre.get_v()) - from);
+    const Complex moved = to + turn * (at(steady.box.getCenter()) - from);
     steady.box.moveCenter(moved.real(), moved.imag());
   }
-  m_steady.erase(std::remove_if(m_steady.begin(), m_steady.end(),
-                                [time](const Steady &steady) { return steady.until < time; }),
+  m_steady.erase(std::remove_if(m_steady.begin(), m_steady.end(), // was looked for, and not seen again
+                                [&](const Steady &steady) { return steady.until + steadiness < time; }),
                  m_steady.end());
 }
 
-//! A region that tells nothing of any lamp.
+//! A region that tells nothing of any lamp. What has long been steady is trusted for as long again.
 void vpLampTracker::rememberSteady(const vpLampObservation &seen, double time)
 {
   static const double around = 0.1, beyond = 8, same = 0.5; // of its extent; px
@@ -213,11 +240,17 @@ void vpLampTracker::rememberSteady(const vpLampObservation &seen, double time)
   }
   const vpRect box = boxOf(seen.outline);
   const double wider = around + beyond / std::max(1.0, std::min(box.getWidth(), box.getHeight()));
-  m_steady.erase(std::remove_if(m_steady.begin(), m_steady.end(),
-                                [&box](const Steady &steady) { return overlap(steady.box, box) > same; }),
-                 m_steady.end());
+  double since = time;
+  const auto others = std::partition(m_steady.begin(), m_steady.end(), [&box](const Steady &steady) {
+    return !(overlap(steady.box, box) > same);
+  });
+  for (auto before = others; before != m_steady.end(); ++before) {
+    since = std::min(since, before->since);
+  }
+  m_steady.erase(others, m_steady.end());
   static const double ofCut = 0.25; // a part of it: it may be a lamp that comes into sight
-  m_steady.push_back({widened(box, wider), time + (seen.cut ? ofCut : 1) * steadiness});
+  m_steady.push_back(
+      {widened(box, wider), since, time + (seen.cut ? ofCut : 1) * std::max(steadiness, time - since)});
 }
 
 //! Where to look: around each target, where lamps are expected, and the strip whose turn it is.
@@ -228,6 +261,7 @@ void vpLampTracker::setWindows(const vpVlpFrame &frame, const std::vector<vpRect
   for (Track &track : m_tracks) {
     track.taken = false;
     track.found = false;
+    track.before = track.target->center();
     if (track.astray) {
       track.window = track.place;
     } else {

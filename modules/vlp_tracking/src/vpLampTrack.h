@@ -18,6 +18,7 @@ struct vpLampTracker::Track {
   std::unique_ptr<vpTargetTracker> target;
   vpLedIdEvidence evidence;
   vpRect window;       // px, where it is expected in the frame at hand
+  vpImagePoint before; // px, where its target was in the frame before
   double seenLast = 0; // s
   vpRect told;         // px, where it blinked last
   bool taken = false;  // by an observation of the frame at hand

@@ -15,7 +15,7 @@ BEGIN_VISP_NAMESPACE
 struct vpLampTracker::Scratch {
   std::vector<vpLampObservation> spare; // of frames before
   std::vector<char> another;            // reacquire(): of each observation, whether it is another lamp's
-  std::vector<vpRect> known, knownOrSteady, open; // search(), px
+  std::vector<vpRect> known, steady, light, open; // search(), px
 };
 
 END_VISP_NAMESPACE

@@ -101,7 +101,7 @@ cv::Rect withNextStripes(const vpLedRoi &roi)
 }
 
 /*!
-  Says of a level's stripes in which of them nothing is looked for at higher levels: steady ones, and those of
+  Says of a level's stripes in which of them nothing is looked for at higher levels: even ones, and those of
   lamps for certain. One beside a region that is no lamp, as the ceiling, may lack stripes that run together
   with that. \param begun The level's first node of the tree.
 */
@@ -111,13 +111,13 @@ void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,
   std::vector<char> good(tree.size() - begun);
   for (size_t i = 0; i < good.size(); ++i) {
     const Group &group = tree[begun + i];
-    good[i] = group.roi.steady || (settled(group, dark.noise) && !mayHoldLamps(group, lines, dark.level));
+    good[i] = group.roi.even || (settled(group, dark.noise) && !mayHoldLamps(group, lines, dark.level));
   }
   for (size_t i = 0; i < good.size(); ++i) {
     const Group &group = tree[begun + i];
     const cv::Rect around = good[i] != 0 ? withNextStripes(group.roi) : cv::Rect();
     const bool last =
-        group.roi.steady ||
+        group.roi.even ||
         (good[i] != 0 &&
          std::none_of(level.stripes.begin(), level.stripes.end(), [&](const vpLevelStripes::Stripe &other) {
            return good[other.group - begun] == 0 && (around & other.box).area() > 0;
@@ -128,16 +128,19 @@ void settle(vpLevelStripes &level, const std::vector<Group> &tree, int begun,
   }
 }
 
-//! Whether stripes of one set shine for longer than any lamp does without going dark.
-bool isSteady(const vpLevelStripes &level, const vpLevelStripes::Set &set,
-              const cv::Mat_<unsigned char> &lines, const vpBackground &dark, double longestPeriod)
+bool isWithin(const cv::Rect &box, const std::vector<cv::Rect> &others)
+{
+  return std::any_of(others.begin(), others.end(),
+                     [&box](const cv::Rect &other) { return (box & other) == box; });
+}
+
+cv::Rect boxOf(const vpLevelStripes &level, const vpLevelStripes::Set &set)
 {
   cv::Rect box;
   for (int s : set.stripes) {
     box |= level.stripes[s].box;
   }
-  return box.height > longestPeriod &&
-         !vpMayBlink(lines, box, dark.level, dark.noiseAt(level.grey), longestPeriod);
+  return box;
 }
 
 /*!
@@ -283,19 +286,17 @@ void moveTo(vpLedRoi &roi, const cv::Point &origin, const cv::Size &picture)
 }
 
 //! Larger by as much as the regions that its sides may cut, on these sides. Itself where there are none.
-cv::Rect grownAround(const cv::Rect &window, const std::vector<vpLedRoi> &rois, const cv::Rect &picture)
+cv::Rect grownAround(const cv::Rect &window, const std::vector<vpLedRoi> &rois, const cv::Rect &picture,
+                     double longestPeriod)
 {
   cv::Rect grown = window;
   for (const vpLedRoi &roi : rois) {
     // A dark stripe may part a lamp from the rest that lies beyond the window.
-    const int gap = 1 + roi.box.width / 2;
-    const bool cut = roi.box.x <= window.x || roi.box.br().x >= window.br().x ||
-                     roi.box.y <= window.y + gap || roi.box.br().y >= window.br().y - gap;
+    const int gap = roi.steady ? 0 : 1 + static_cast<int>(std::min(0.5 * roi.box.width, longestPeriod));
     const int side = std::max(roi.box.width, roi.box.height);
-    if (cut) {
-      grown |=
-          cv::Rect(roi.box.x - side, roi.box.y - side, roi.box.width + 2 * side, roi.box.height + 2 * side);
-    }
+    const cv::Point before(roi.box.x <= window.x ? side : 0, roi.box.y <= window.y + gap ? side : 0),
+        after(roi.box.br().x >= window.br().x ? side : 0, roi.box.br().y >= window.br().y - gap ? side : 0);
+    grown |= cv::Rect(roi.box.tl() - before, roi.box.br() + after);
   }
   return grown & picture;
 }
@@ -315,20 +316,28 @@ vpLinePicture::vpLinePicture(const vpImage<unsigned char> &I, bool alongColumns)
 
 std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines) const
 {
-  if (lines.empty()) {
-    return {};
-  }
-  const vpBackground dark = vpBackground::of(lines);
-  std::vector<vpLedRoi> rois = detect(lines, dark);
+  return lines.empty() ? std::vector<vpLedRoi>() : detect(lines, vpBackground::of(lines), {});
+}
+
+//! All but what lies inside \e known boxes.
+std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines, const vpBackground &dark,
+                                               const std::vector<cv::Rect> &known) const
+{
+  std::vector<vpLedRoi> rois = lampsOf(lines, dark, known);
   for (const int width : vpBinnedSearch::widths(dark)) {
-    rois = vpBinnedSearch::merged(
-        std::move(rois), detect(vpBinnedSearch::binned(lines, width), vpBinnedSearch::binned(dark, width)));
+    rois = vpBinnedSearch::merged(std::move(rois), lampsOf(vpBinnedSearch::binned(lines, width),
+                                                           vpBinnedSearch::binned(dark, width), known));
   }
+  rois.erase(std::remove_if(rois.begin(), rois.end(),
+                            [&known](const vpLedRoi &roi) { return isWithin(roi.box, known); }),
+             rois.end());
   return rois;
 }
 
-std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines,
-                                               const vpBackground &dark) const
+//! The regions at the samples' own resolution, those inside \e known boxes not taken apart.
+std::vector<vpLedRoi> vpLedRoiDetector::lampsOf(const cv::Mat_<unsigned char> &lines,
+                                                const vpBackground &dark,
+                                                const std::vector<cv::Rect> &known) const
 {
   const double lowest = std::max(noiseFactor * dark.noise, minContrast);
 
@@ -345,12 +354,16 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
     const auto begun = static_cast<int>(tree.size()); // the level's first node
     vpLevelStripes level(lines, grey, grey + peakFactor * dark.noiseAt(grey), first ? nullptr : &below);
     for (vpLevelStripes::Set &set : level.sets(maxDarkGap, longestPeriod)) {
-      const bool steady = isSteady(level, set, lines, dark, longestPeriod);
-      long none = 0; // what is steady is not taken apart
-      for (Group &group :
-           Group::lampsOf(level, std::move(set), lines, dark.level, steady ? none : workLeft)) {
+      const cv::Rect box = boxOf(level, set);
+      const bool tall = box.height > longestPeriod,
+                 even = isWithin(box, known) ||
+                        (std::isfinite(longestPeriod) && (tall || set.stripes.size() == 1) &&
+                         !vpMayBlink(lines, box, dark.level, dark.noiseAt(grey), longestPeriod));
+      long none = 0; // what is even is not taken apart
+      for (Group &group : Group::lampsOf(level, std::move(set), lines, dark.level, even ? none : workLeft)) {
         const int node = static_cast<int>(tree.size());
-        group.roi.steady = steady;
+        group.roi.even = even;
+        group.roi.steady = even && tall;
         const int largest =
             *std::max_element(group.set.stripes.begin(), group.set.stripes.end(), [&](int a, int b) {
               return level.stripes[a].box.area() < level.stripes[b].box.area();
@@ -389,15 +402,21 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
   return rois;
 }
 
-std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines,
-                                               const cv::Rect &window) const
+std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window,
+                                               const std::vector<cv::Rect> &known) const
 {
   static const int mostRounds = 3; // after which the whole picture is looked at
   const cv::Rect picture(0, 0, lines.cols, lines.rows);
   cv::Rect looked = window & picture;
   std::vector<vpLedRoi> rois;
   for (int round = 1; looked.area() > 0; ++round) {
-    rois = detect(lines(looked));
+    std::vector<cv::Rect> knownThere = known;
+    for (cv::Rect &box : knownThere) {
+      box -= looked.tl();
+    }
+    // As much beside it tells what is dark: what is asked for may fill it.
+    const cv::Rect beside = vpGrown(looked, std::max(looked.width, looked.height) / 2) & picture;
+    rois = detect(lines(looked), vpBackground::of(lines(beside)), knownThere);
     for (vpLedRoi &roi : rois) {
       moveTo(roi, looked.tl(), picture.size());
     }
@@ -405,8 +424,8 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
     rois.erase(std::remove_if(rois.begin(), rois.end(),
                               [&window](const vpLedRoi &roi) { return (roi.box & window).area() == 0; }),
                rois.end());
-    const cv::Rect grown = round < mostRounds ? grownAround(looked, rois, picture) : picture;
-    if (grownAround(looked, rois, picture) == looked) {
+    const cv::Rect grown = round < mostRounds ? grownAround(looked, rois, picture, longestPeriod) : picture;
+    if (grownAround(looked, rois, picture, longestPeriod) == looked) {
       break;
     }
     looked = grown;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -115,6 +116,23 @@ std::vector<int> joinTouching(const std::vector<Run> &runs)
   return root;
 }
 
+//! What there is of a stripe, run by run in line order.
+struct Extent {
+  int left = std::numeric_limits<int>::max(), right = -1, top = -1, bottom = -1;
+  int peak = 0;    // grey level
+  int number = -1; // of the stripe
+
+  void add(const Run &run)
+  {
+    left = std::min(left, run.first);
+    right = std::max(right, run.last);
+    top = top < 0 ? run.line : top;
+    bottom = run.line;
+  }
+  int width() const { return right - left + 1; }
+  cv::Rect box() const { return {left, top, width(), bottom - top + 1}; }
+};
+
 //! Whether the lower stripe may go on where the upper one ended, behind a dark gap.
 bool facing(const Stripe &upper, const Stripe &lower, double maxDarkGap, double mostLines, int samples)
 {
@@ -144,32 +162,30 @@ vpLevelStripes::vpLevelStripes(const cv::Mat_<unsigned char> &lines, double leve
 {
   const std::vector<Run> found = runsAbove(lines, grey, below);
   const std::vector<int> root = joinTouching(found);
-  std::vector<cv::Rect> boxes(found.size());
+  std::vector<Extent> extents(found.size()); // of the roots
   for (size_t i = 0; i < found.size(); ++i) {
-    boxes[root[i]] |= cv::Rect(found[i].first, found[i].line, found[i].last - found[i].first + 1, 1);
+    extents[root[i]].add(found[i]);
   }
-  std::vector<int> peaks(found.size(), 0);
   for (size_t i = 0; i < found.size(); ++i) {
-    int &peak = peaks[root[i]];
-    if (peak < leastPeak && boxes[root[i]].width >= minStripeWidth) {
-      peak = std::max<int>(peak, vpBrighter::brightest(lines[found[i].line] + found[i].first,
-                                                       found[i].last - found[i].first + 1));
+    Extent &whole = extents[root[i]];
+    if (whole.peak < leastPeak && whole.width() >= minStripeWidth) {
+      whole.peak = std::max<int>(whole.peak, vpBrighter::brightest(lines[found[i].line] + found[i].first,
+                                                                   found[i].last - found[i].first + 1));
     }
   }
-  std::vector<int> number(found.size(), -1); // of a root's stripe
   for (size_t i = 0; i < found.size(); ++i) {
-    const int r = root[i];
-    if (boxes[r].width < minStripeWidth || peaks[r] < leastPeak) {
+    Extent &whole = extents[root[i]];
+    if (whole.width() < minStripeWidth || whole.peak < leastPeak) {
       continue;
     }
-    if (number[r] < 0) {
-      number[r] = static_cast<int>(stripes.size());
+    if (whole.number < 0) {
+      whole.number = static_cast<int>(stripes.size());
       stripes.emplace_back();
-      stripes.back().box = boxes[r];
+      stripes.back().box = whole.box();
       stripes.back().parent = found[i].stripe;
     }
-    stripes[number[r]].runs.push_back(static_cast<int>(runs.size()));
-    runs.push_back({found[i].line, found[i].first, found[i].last, number[r]});
+    stripes[whole.number].runs.push_back(static_cast<int>(runs.size()));
+    runs.push_back({found[i].line, found[i].first, found[i].last, whole.number});
   }
 }
 

@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// vpLedRoiDetector::showsMore(): whether it is worth looking for lamps at all.
+// vpLedRoiDetector::otherLight(): where it is worth looking for lamps at all.
 
 #include <visp3/vlp_detection/vpLedRoiDetector.h>
 
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <utility>
 
+#include <opencv2/core.hpp>
 #include <visp3/core/vpRect.h>
 
 #include <visp3/vlp_core/vpBrighter.h>
@@ -19,24 +20,37 @@ BEGIN_VISP_NAMESPACE
 
 namespace
 {
-//! Whether three samples in a row are brighter, of those from \e first to before \e last.
-bool brightRun(const unsigned char *row, int first, int last, unsigned char grey)
+//! Adds samples \e first to before \e last of a line to the box that is near, or as one of its own.
+void add(int first, int last, int line, std::vector<cv::Rect> &boxes)
+{
+  static const int near = 64; // px
+  const cv::Rect stretch(first, line, last - first, 1),
+      around(first - near, line - near, last - first + 2 * near, near + 1);
+  for (cv::Rect &box : boxes) {
+    if ((box & around).area() > 0) {
+      box |= stretch;
+      return;
+    }
+  }
+  boxes.push_back(stretch);
+}
+
+//! Adds where three samples in a row are brighter, of those from \e first to before \e last.
+void addBright(const unsigned char *row, int line, int first, int last, unsigned char grey,
+               std::vector<cv::Rect> &boxes)
 {
   if (last <= first || vpBrighter::brightest(row + first, last - first) <= grey) {
-    return false; // nearly always
+    return; // nearly always
   }
   std::uint64_t before = 0; // the last two samples of the block before, as its two lowest bits
   for (int x = first; x < last; x += vpBrighter::block) {
-    const std::uint64_t mask = vpBrighter::mask(row + x, std::min(vpBrighter::block, last - x), grey);
-    if (mask != 0) {
-      const std::uint64_t once = mask << 1 | before >> 1, twice = mask << 2 | before;
-      if ((mask & once & twice) != 0) {
-        return true;
-      }
+    const std::uint64_t mask = vpBrighter::mask(row + x, std::min(vpBrighter::block, last - x), grey),
+                        thirds = mask & (mask << 1 | before >> 1) & (mask << 2 | before);
+    if (thirds != 0) {
+      add(x + __builtin_ctzll(thirds) - 2, x + vpBrighter::block - __builtin_clzll(thirds), line, boxes);
     }
     before = mask >> (vpBrighter::block - 2);
   }
-  return false;
 }
 
 //! Of pixels here and there.
@@ -64,21 +78,25 @@ int near(double x, int pixels)
 }
 } // namespace
 
-bool vpLedRoiDetector::showsMore(const vpImage<unsigned char> &I, const vpRect &window,
-                                 const std::vector<vpRect> &known, double noise)
+void vpLedRoiDetector::otherLight(const vpImage<unsigned char> &I, const vpRect &window,
+                                  const std::vector<vpRect> &known, double noise, std::vector<vpRect> &found)
 {
   static const double leastContrast = 8, sigmas = 6; // grey levels; standard deviations
+  found.clear();
   const int columns = static_cast<int>(I.getWidth()), rows = static_cast<int>(I.getHeight());
   const int left = std::max(0, near(std::floor(window.getLeft()), columns)),
             top = std::max(0, near(std::floor(window.getTop()), rows)),
             right = std::min(columns, near(std::ceil(window.getRight()), columns) + 1),
             bottom = std::min(rows, near(std::ceil(window.getBottom()), rows) + 1);
   const double limit = medianOf(I, left, top, right, bottom) + std::max(leastContrast, sigmas * noise);
-  if (limit >= 255) {
-    return true; // so bright that nothing would stand out
+  if (limit >= 255) { // so bright that nothing would stand out
+    found.push_back(window);
+    return;
   }
   const auto grey = static_cast<unsigned char>(limit);
   static thread_local std::vector<std::pair<int, int>> hidden; // samples, of a line; for its memory
+  static thread_local std::vector<cv::Rect> boxes;             // likewise
+  boxes.clear();
   for (int y = top; y < bottom; ++y) {
     hidden.clear();
     for (const vpRect &box : known) {
@@ -90,16 +108,14 @@ bool vpLedRoiDetector::showsMore(const vpImage<unsigned char> &I, const vpRect &
     std::sort(hidden.begin(), hidden.end());
     int x = left;
     for (const auto &[from, to] : hidden) {
-      if (from > x && brightRun(I[y], x, std::min(from, right), grey)) {
-        return true;
-      }
+      addBright(I[y], y, x, std::min(from, right), grey, boxes);
       x = std::max(x, to + 1);
     }
-    if (x < right && brightRun(I[y], x, right, grey)) {
-      return true;
-    }
+    addBright(I[y], y, x, right, grey, boxes);
   }
-  return false;
+  for (const cv::Rect &box : boxes) {
+    found.emplace_back(box.x, box.y, box.width, box.height);
+  }
 }
 
 END_VISP_NAMESPACE

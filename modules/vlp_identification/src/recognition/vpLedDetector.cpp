@@ -144,13 +144,15 @@ bool vpLedDetector::detect(const vpImage<unsigned char> &I)
   return observe(picture, roiDetector.detect(picture.grey));
 }
 
-bool vpLedDetector::detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows)
+bool vpLedDetector::detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows,
+                           const std::vector<vpRect> &known)
 {
   check(I);
   const vpLinePicture picture(I, m_rig.shutter.alongColumns());
+  const std::vector<cv::Rect> knownBoxes = linesOf(known, picture);
   std::vector<vpLedRoi> rois;
   for (const cv::Rect &window : joined(linesOf(windows, picture))) {
-    for (vpLedRoi &roi : roiDetector.detect(picture.grey, window)) {
+    for (vpLedRoi &roi : roiDetector.detect(picture.grey, window, knownBoxes)) {
       // Windows that grow may see one lamp twice.
       const bool twice = std::any_of(rois.begin(), rois.end(), [&roi](const vpLedRoi &other) {
         return 2 * (roi.box & other.box).area() > std::min(roi.box.area(), other.box.area());
@@ -359,7 +361,7 @@ vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const
 {
   const bool dark = roi.chords.size() < static_cast<size_t>(roi.box.height); // some of its lines
   const bool blinks = dark && vpOutlineFitter::looksWhole(roi);
-  return observe(picture, roi, !roi.steady && (blinks || mayBlink(picture, roi)));
+  return observe(picture, roi, !roi.even && (blinks || mayBlink(picture, roi)));
 }
 
 vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi, bool blinks)

@@ -46,7 +46,8 @@ struct VISP_EXPORT vpLedRoi {
   cv::Rect box;           // x: samples, y: lines
   double level = 0;       // grey value that its pixels exceed
   double lampness = 0;    // 0 to 1: how much the chords look like one whole lamp
-  bool steady = false;    // shines without dark lines, for longer than any lamp
+  bool even = false;      // no strip of its samples dips from line to line: one stripe, or steady light
+  bool steady = false;    // even for longer than any lamp shines
   bool cutAcross = false; // touches the first or last sample
   bool cutAlong = false;  // touches the first or last line, or may go on beyond it after a dark stripe
 
@@ -86,20 +87,24 @@ public:
 
   /*!
     The same of all regions that \e window (x: samples, y: lines) shows a part of. Where its sides may cut
-    one, a larger one is looked at.
+    one, a larger one is looked at. \param known Boxes of what is known already: regions inside are left out.
   */
-  std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window) const;
+  std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window,
+                               const std::vector<cv::Rect> &known = {}) const;
 
   /*!
-    Whether a window shows any light but that of known lamps: three samples in a row that are brighter than
-    the window's median by 8 grey levels and by six standard deviations of the noise. \param known Boxes that
-    are left out, px. \param noise Grey levels.
+    Where a window shows any light but that of known lamps: three samples in a row that are brighter than the
+    window's median by 8 grey levels and by six standard deviations of the noise. \param known Boxes that are
+    left out, px. \param noise Grey levels. \param found Takes boxes, px, of light that is near to each other.
   */
-  static bool showsMore(const vpImage<unsigned char> &I, const vpRect &window,
-                        const std::vector<vpRect> &known, double noise);
+  static void otherLight(const vpImage<unsigned char> &I, const vpRect &window,
+                         const std::vector<vpRect> &known, double noise, std::vector<vpRect> &found);
 
 private:
-  std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const vpBackground &dark) const;
+  std::vector<vpLedRoi> detect(const cv::Mat_<unsigned char> &lines, const vpBackground &dark,
+                               const std::vector<cv::Rect> &known) const;
+  std::vector<vpLedRoi> lampsOf(const cv::Mat_<unsigned char> &lines, const vpBackground &dark,
+                                const std::vector<cv::Rect> &known) const;
 };
 
 END_VISP_NAMESPACE

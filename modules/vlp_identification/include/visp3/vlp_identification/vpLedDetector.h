@@ -55,10 +55,11 @@ public:
 
   /*!
     The same inside windows only, pixels; those that overlap are looked at as one. A lamp that a window cuts
-    is seen whole all the same, and so may be a neighbour. \throw vpException (badValue) where a window's
-    corners are not finite.
+    is seen whole all the same, and so may be a neighbour. \param known Boxes of what is known already,
+    pixels: regions inside are left out. \throw vpException (badValue) where a corner is not finite.
   */
-  bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows);
+  bool detect(const vpImage<unsigned char> &I, const std::vector<vpRect> &windows,
+              const std::vector<vpRect> &known = {});
 
   /*!
     Finds a lamp again whose identity is known, in a fraction of detect()'s time: fits its outline from the

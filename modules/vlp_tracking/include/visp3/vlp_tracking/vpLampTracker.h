@@ -34,8 +34,9 @@ BEGIN_VISP_NAMESPACE
   A picture that shows all lamps as the frame before did, pixel for pixel, is a repeated one: a sensor has
   noise. Its stripes are no new measurement and do not count again.
 
-  Steady regions (windows, lamps without stripes) are found by the search and not followed. For a while their
-  places are left out of the search, moved along with the lamps.
+  Steady regions (windows, lamps without stripes) are found by the search and not followed. For a while, the
+  longer the longer they have been there, their places are left out of the search, moved along with the lamps;
+  but not where a lamp is expected.
 
   \code
   vpLampTracker tracker(rig, map);
@@ -54,7 +55,7 @@ public:
   double searchShare = 0.2; // of the picture that is searched for new lamps in each frame
   size_t needed = 2;        // lamps in sight with an id, below which all of it is
   unsigned int sure = 5;    // frames that agree on a lamp, after which it may be reacquired
-  double steadiness = 2;    // s, for which a region that is no lamp is not searched again
+  double steadiness = 2;    // s, for which a region that is no lamp is not searched again at first
 
   vpLampTracker(const vpVlpRig &rig, const vpLampMap &map);
   ~vpLampTracker();
@@ -84,8 +85,8 @@ private:
   struct Track;
   struct Scratch;
   struct Steady {
-    vpRect box;       // px, in the last frame
-    double until = 0; // s
+    vpRect box;                  // px, in the last frame
+    double since = 0, until = 0; // s: seen first, and looked at again
   };
 
   void setWindows(const vpVlpFrame &frame, const std::vector<vpRect> &expected);
