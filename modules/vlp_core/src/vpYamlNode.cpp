@@ -136,7 +136,7 @@ struct vpYamlNode::Impl {
 
   std::string pathOf(const std::string &key) const
   {
-    return key.empty() ? path : (path.empty() ? key : path + "." + vpShown(key));
+    return key.empty() ? path : (path.empty() ? "" : path + ".") + vpShown(key);
   }
 
   //! How an error message begins.
