@@ -8,6 +8,7 @@
 # Exit code: 0 nothing was found, 1 something was.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+export OPENCV_IO_MAX_IMAGE_PIXELS=$((1 << 26)) # or a header of a few bytes makes it ask for 8 GB, more than -rss_limit_mb
 
 seconds=${1:-60}
 targets=("${@:2}")
