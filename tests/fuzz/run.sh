@@ -46,7 +46,7 @@ run() # TARGET SECONDS
       -print_final_stats=1 ${words:+-dict=tests/fuzz/dictionaries/$words.dict} -artifact_prefix="$found/" \
       "$corpus" "build/fuzz/seeds/$target" >"$log" 2>&1; } 2>"$scratch/cpu" || status=1
   local cpu executed edges all
-  cpu=$(awk '{ print $1 + $2 }' "$scratch/cpu")
+  cpu=$(awk 'END { print $1 + $2 }' "$scratch/cpu")
   executed=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   edges=$(grep -oE 'cov: [0-9]+' "$log" | tail -n 1 | cut -d ' ' -f 2 || true)
   all=$(sed -n 's/.*(\([0-9]*\) inline 8-bit counters).*/\1/p' "$log")
