@@ -8,13 +8,14 @@
 #include "fuzz/vpFuzzBytes.h"
 #include "fuzz/vpFuzzLocation.h"
 
-// A drive under four lamps, by their image points. The input spoils what is seen, odometry and times.
+// A drive under four lamps, by their image points. The input spoils what is seen, odometry and times, and
+// chooses the localizer's settings.
 namespace
 {
 //! \return Whether the lamp is seen at all.
 bool spoiled(vpLampObservation &lamp, vpFuzzBytes &input)
 {
-  switch (const std::uint8_t deed = input.byte(); deed % 12) {
+  switch (const std::uint8_t deed = input.byte(); deed % 13) {
   case 0:
     return false;
   case 1: // elsewhere
@@ -44,6 +45,10 @@ bool spoiled(vpLampObservation &lamp, vpFuzzBytes &input)
   case 8:
     lamp.cut = true;
     break;
+  case 9: // one of two
+    lamp.id.clear();
+    lamp.candidates = {{input.byte() % 4u, 0.6}, {input.byte() % 4u, 0.4}};
+    break;
   default:
     break;
   }
@@ -58,7 +63,15 @@ VLP_FUZZ_TARGET(observations)
   static const vpPlannedDrive drive({-0.3, -0.1, 0.2}, {{4, 0.2, 0.3}, {3, 0, 1}, {3, 0.2, -0.4}});
   static const std::vector<vpOdometry> wheels = drive.odometry(0.02);
   vpVlpLocalizer localizer(ceiling.rig, ceiling.map);
-  std::mt19937_64 generator(input.byte());
+  const std::uint8_t settings = input.byte();
+  std::mt19937_64 generator(settings);
+  using Localizer = vpVlpLocalizer;
+  localizer.tracking = settings % 8 != 1;
+  localizer.solver = settings % 16 == 2 ? Localizer::Solver::two : Localizer::Solver::all;
+  localizer.compensateShutter = settings % 16 != 3;
+  if (settings % 4 == 0) {
+    localizer.manyLamps.attitude = vpManyLampSolver::Attitude::free;
+  }
   size_t told = 0;
   double time = 0, stamped = 0; // s, of the world and of the stamps
   for (int frame = 0; frame < 40 && !input.empty(); ++frame) {

@@ -24,22 +24,62 @@ vpVlpRig rig()
   return rig;
 }
 
-//! A disc whose rows are lit by turns.
-void draw(vpImage<unsigned char> &I, vpFuzzBytes &input, double time)
+constexpr double speed = 0.1; // m/s, along x
+
+//! Four lamps that are large enough for a few periods in a small picture.
+vpLampMap lamps()
 {
-  const double u = 0.5 * width * (1 + input.share()), v = 0.5 * height * (1 + input.share());
-  const double radius = 1 + input.byte() % 32, frequency = 1500 + 500 * (input.byte() % 8);
-  const double duty = 0.1 + 0.8 * input.byte() / 255;
-  const unsigned char lit = input.byte();
+  vpLampMap map = vpSeenLamps(4).map;
+  for (vpLamp &lamp : map.lamps) {
+    lamp.size = 0.8;
+  }
+  return map;
+}
+
+//! A disc whose rows are lit by turns: a lamp as the robot sees it, or what the input makes of it.
+void draw(vpImage<unsigned char> &I, const vpLampMap &map, vpFuzzBytes &input, double time)
+{
+  const std::uint8_t deed = input.byte(), stripes = input.byte();
+  const vpLamp &lamp = map.lamps[deed % 4];
+  const double scale = 80 / lamp.position.z();
+  double u = 79.5 + scale * (lamp.position.x() - speed * time), v = 59.5 + scale * lamp.position.y(),
+         radius = 0.5 * scale * lamp.size, frequency = lamp.modulation.frequency;
+  switch (deed / 4 % 16) {
+  case 0: // anything
+    u = 0.5 * width * (1 + input.share());
+    v = 0.5 * height * (1 + input.share());
+    radius = 1 + input.byte() % 32;
+    frequency = 1500 + 500 * (input.byte() % 8);
+    break;
+  case 1: // elsewhere
+    u += width * input.share();
+    v += height * input.share();
+    break;
+  case 2: // a little off
+    u += 4 * input.share();
+    v += 4 * input.share();
+    break;
+  case 3:
+    radius *= std::pow(2, input.share());
+    break;
+  case 4:
+    frequency *= std::pow(2, input.share());
+    break;
+  default:
+    break;
+  }
+  const double duty = 0.1 + 0.05 * (stripes % 16);
+  const int lit = 255 - 8 * (stripes / 16);
   for (unsigned int row = 0; row < height; ++row) {
-    const double phase = frequency * (time + row * 43e-6);
-    if (phase - std::floor(phase) > duty) {
-      continue;
+    int shone = 0; // eighths of the exposure
+    for (int k = 0; k < 8; ++k) {
+      const double phase = frequency * (time + row * 43e-6 + k * 2.5e-6);
+      shone += phase - std::floor(phase) < duty ? 1 : 0;
     }
     const double half = std::sqrt(std::max(0.0, radius * radius - (row - v) * (row - v)));
     for (unsigned int column = 0; column < width; ++column) {
       if (half > 0 && std::abs(column - u) < half) {
-        I[row][column] = std::max(I[row][column], lit);
+        I[row][column] = std::max(I[row][column], static_cast<unsigned char>(lit * shone / 8));
       }
     }
   }
@@ -49,7 +89,7 @@ void draw(vpImage<unsigned char> &I, vpFuzzBytes &input, double time)
 VLP_FUZZ_TARGET(pictures)
 {
   vpFuzzBytes input(data, size);
-  static const vpLampMap map = vpSeenLamps(4).map;
+  static const vpLampMap map = lamps();
   vpVlpLocalizer localizer(rig(), map);
   double time = 0; // s
   for (int picture = 0; picture < 8 && !input.empty(); ++picture) {
@@ -60,7 +100,7 @@ VLP_FUZZ_TARGET(pictures)
     frame.I.resize(height, width);
     frame.I = input.byte() % 64;
     for (int lamp = 0; lamp < deed / 32; ++lamp) {
-      draw(frame.I, input, time);
+      draw(frame.I, map, input, time);
     }
     if (deed % 4 == 1) { // grains of noise
       unsigned int state = input.byte();
@@ -72,7 +112,9 @@ VLP_FUZZ_TARGET(pictures)
       }
     }
     vpFuzzReads([&] {
-      localizer.filter.addOdometry({time, input.share(), 3 * input.share()});
+      const bool slips = deed % 8 == 3;
+      localizer.filter.addOdometry(
+          {time, speed + (slips ? input.share() : 0), slips ? 3 * input.share() : 0});
       vpFuzzExpectSound(localizer.process(frame), localizer.filter);
     });
   }

@@ -100,6 +100,20 @@ void decisions(const fs::path &target)
   }
 }
 
+//! Eight pictures of all lamps in their places.
+void drive(const fs::path &target)
+{
+  std::vector<std::uint8_t> bytes;
+  for (int picture = 0; picture < 8; ++picture) {
+    bytes.insert(bytes.end(), {132, 10}); // four lamps, the level around them
+    for (std::uint8_t lamp = 0; lamp < 4; ++lamp) {
+      bytes.insert(bytes.end(),
+                   {static_cast<std::uint8_t>(32 + lamp), 8}); // as it is, lit for half of the time
+    }
+  }
+  write(target, "drive", bytes);
+}
+
 void run(const fs::path &out)
 {
   copy("data/lamps", ".yaml", out / "lamps");
@@ -129,6 +143,7 @@ void run(const fs::path &out)
   for (const char *const target : {"bus", "observations", "pictures"}) {
     decisions(out / target);
   }
+  drive(out / "pictures");
 }
 } // namespace
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <visp3/core/vpException.h>
@@ -95,6 +96,39 @@ bool readNumber(const YAML::Node &node, vpYamlNode::Range range, double &value)
          isWithin(value, range);
 }
 
+/*!
+  The lines at which a text's first two documents begin. yaml-cpp reads the first or all, of which it finds
+  ever more where a comma stands in the place of one.
+*/
+struct DocumentLines : YAML::EventHandler {
+  static DocumentLines of(const std::string &text)
+  {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    DocumentLines documents;
+    while (documents.lines.size() < 2 && parser.HandleNextDocument(documents)) {
+    }
+    return documents;
+  }
+
+  void OnDocumentStart(const YAML::Mark &mark) override { lines.push_back(mark.line + 1); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark &, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark &, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark &, const std::string &, YAML::anchor_t, const std::string &) override {}
+  void OnSequenceStart(const YAML::Mark &, const std::string &, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override
+  {
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark &, const std::string &, YAML::anchor_t, YAML::EmitterStyle::value) override
+  {
+  }
+  void OnMapEnd() override {}
+
+  std::vector<int> lines;
+};
+
 std::string listed(const std::vector<std::string> &words)
 {
   std::string text;
@@ -136,7 +170,7 @@ struct vpYamlNode::Impl {
 
   std::string pathOf(const std::string &key) const
   {
-    return key.empty() ? path : (path.empty() ? key : path + "." + vpShown(key));
+    return key.empty() ? path : (path.empty() ? "" : path + ".") + vpShown(key);
   }
 
   //! How an error message begins.
@@ -200,22 +234,24 @@ vpYamlNode::vpYamlNode(std::shared_ptr<Impl> impl) : m_impl(std::move(impl)) {}
 vpYamlNode vpYamlNode::load(const std::string &filename)
 {
   const std::string text = vpReadFile(filename);
-  std::vector<YAML::Node> documents;
+  YAML::Node document;
+  DocumentLines documents;
   try {
-    documents = YAML::LoadAll(text);
+    documents = DocumentLines::of(text);
+    document = YAML::Load(text);
   } catch (const YAML::Exception &error) {
     failAt(filename, error.mark.line + 1, "not YAML: " + vpShown(error.msg));
   }
-  if (documents.empty() || (documents.size() == 1 && documents[0].IsNull())) {
+  if (document.IsNull()) {
     failAt(filename, 1, "nothing, expected a mapping");
   }
-  if (documents.size() > 1) {
-    failAt(filename, lineOf(documents[1]), "a second document, expected one");
+  if (documents.lines.size() > 1) {
+    failAt(filename, documents.lines[1], "a second document, expected one");
   }
-  if (!documents[0].IsMap()) {
-    failAt(filename, lineOf(documents[0]), described(documents[0]) + ", expected a mapping");
+  if (!document.IsMap()) {
+    failAt(filename, lineOf(document), described(document) + ", expected a mapping");
   }
-  return vpYamlNode(Impl::of(documents[0], filename, ""));
+  return vpYamlNode(Impl::of(document, filename, ""));
 }
 
 bool vpYamlNode::has(const std::string &key) const

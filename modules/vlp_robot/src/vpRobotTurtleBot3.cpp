@@ -37,6 +37,12 @@ double ticksBetween(std::int32_t from, std::int32_t to)
 {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
 }
+
+//! Whether the gyro may have measured that, rad/s.
+bool isRate(double gyro)
+{
+  return std::abs(gyro) <= largestGyro; // false for what is no number
+}
 } // namespace
 
 void vpRobotTurtleBot3Settings::check() const
@@ -81,6 +87,10 @@ void vpRobotTurtleBot3::begin()
   m_clockOffset = m_settings.clock ? m_settings.clock() - now() : 0;
   dateBoard();
   m_last = readingOf(readTable(now() + openingTime));
+  if (!isRate(m_last.gyro)) {
+    throw vpException(vpException::ioError, m_bus.name() + ": gyro " + vpNumberText(m_last.gyro) +
+                                                " rad/s, expected at most " + vpNumberText(largestGyro));
+  }
   m_odometry = {m_last.time + m_clockOffset, 0, 0};
   m_connected = true;
 }
@@ -318,14 +328,16 @@ vpControlBlock vpRobotTurtleBot3::readCurrentTable(double deadline)
 
 bool vpRobotTurtleBot3::plausible(const vpControlBlock &table) const
 {
-  const double most = speedMargin * m_geometry.wheelSpeedLimit * (now() - m_last.time) / vpTurtleBot3::tick;
+  // A wrong counter must not shorten what the mean velocity is over. One that stands yields no velocity.
+  const double counted = 1e-3 * static_cast<std::int32_t>(table.get(Table::millis) - m_last.millis),
+               since = now() - m_last.time, elapsed = counted > 0 ? std::min(counted, since) : since;
+  const double most = speedMargin * m_geometry.wheelSpeedLimit * elapsed / vpTurtleBot3::tick;
   const auto turned = [&](std::int32_t from, std::int32_t to) {
     return std::abs(ticksBetween(from, to)) <= most + tickMargin;
   };
   return m_clock.sinceLast(table.get(Table::millis)) >= 0 &&
          turned(m_last.left, table.get(Table::positionLeft)) &&
-         turned(m_last.right, table.get(Table::positionRight)) &&
-         std::abs(table.get(Table::gyroZ)) <= largestGyro; // false for what is no number
+         turned(m_last.right, table.get(Table::positionRight)) && isRate(table.get(Table::gyroZ));
 }
 
 //! What the table says that was read last.
