@@ -40,11 +40,11 @@ failed_with() # EXIT
   [ "$1" != 132 ] || echo "instructions.sh: valgrind does not know an instruction that a library uses on this processor" >&2
   exit $(($1 == 132 ? 77 : 1))
 }
-kinds=(whole tracked mixed) # the last one: whole frames of a mixed ceiling
+kinds=(whole tracked mixed followed) # the last two: whole and tracked frames of a mixed ceiling
 count() # SIZE KIND: millions of instructions per frame
 {
-  local how=(whole "$frames" "$2")
-  case $2 in whole | tracked) how=("$2" "$frames") ;; esac
+  local how=("$2" "$frames")
+  case $2 in mixed) how=(whole "$frames" mixed) ;; followed) how=(tracked "$frames" mixed) ;; esac
   valgrind -q --tool=callgrind --toggle-collect='vpCountedFrames*' --callgrind-out-file="$work/counts" \
     "$program" "$1" "${how[@]}" >"$work/said" 2>&1 || failed_with $?
   if ! grep -q "$frames frames, $frames with a position" "$work/said"; then
@@ -73,7 +73,7 @@ fi
 echo "Millions of instructions per frame, mean of $frames:"
 echo
 echo "| frames | ${kinds[*]} |" | sed 's/\([a-z]\) \([a-z]\)/\1 | \2/g'
-echo "|---|---|---|---|"
+echo "|---|---|---|---|---|"
 for size in 800x600 2048x1536; do
   row="| $size |"
   for kind in "${kinds[@]}"; do

@@ -196,7 +196,8 @@ void vpLampTracker::searchAll(const vpVlpFrame &frame)
 void vpLampTracker::moveSteady(double time)
 {
   using Complex = std::complex<double>;
-  std::vector<std::pair<Complex, Complex>> moves; // px, from where to where
+  std::vector<std::pair<Complex, Complex>> &moves = m_scratch->moves;
+  moves.clear();
   auto at = [](const vpImagePoint &point) { return Complex(point.get_u(), point.get_v()); };
   for (const Track &track : m_tracks) {
     if (track.taken) {

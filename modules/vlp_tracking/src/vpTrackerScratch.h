@@ -5,6 +5,8 @@
 #ifndef vpTrackerScratch_h
 #define vpTrackerScratch_h
 
+#include <complex>
+#include <utility>
 #include <vector>
 
 #include <visp3/vlp_tracking/vpLampTracker.h>
@@ -15,7 +17,8 @@ BEGIN_VISP_NAMESPACE
 struct vpLampTracker::Scratch {
   std::vector<vpLampObservation> spare; // of frames before
   std::vector<char> another;            // reacquire(): of each observation, whether it is another lamp's
-  std::vector<vpRect> known, steady, light, open; // search(), px
+  std::vector<vpRect> known, steady, light, open;                           // search(), px
+  std::vector<std::pair<std::complex<double>, std::complex<double>>> moves; // moveSteady(): px, from, to
 };
 
 END_VISP_NAMESPACE
