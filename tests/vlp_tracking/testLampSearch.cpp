@@ -79,6 +79,16 @@ TEST(LampSearch, NewLampIsFoundBesideASteadyRegionAtOnceAndInPlaceOfOneOnceThatI
   }
 }
 
+TEST(LampSearch, LongSteadyRegionsAreSeldomLookedAtAndALampInTheirPlaceIsFoundInTime)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  tracker.steadiness = 0.1;
+  EXPECT_LE(sightings(scene, tracker, 10, 130, 0, with(three, steady), steady), 12); // in 4 s
+  const Lamp late = {steady.u, steady.v, 4400};
+  EXPECT_GE(sightings(scene, tracker, 130, 130 + 37, 0, with(three, late), late), 1);
+}
+
 TEST(LampSearch, LampThatIsExpectedBesideASteadyRegionIsFoundAtOnce)
 {
   const Scene scene;

@@ -91,22 +91,23 @@ void vpLampTracker::reacquire(const vpImage<unsigned char> &I)
 //! What reacquisition left open: lamps that were not found, and windows that show more than those that were.
 void vpLampTracker::search(const vpVlpFrame &frame)
 {
-  static const double halo = 0.1, beyond = 4; // of a lamp's extent; px
+  static const double halo = 0.1, beyond = 4, beyondSteady = 8; // of an extent; px
   std::vector<vpRect> &known = m_scratch->known, &open = m_scratch->open, &steady = m_scratch->steady,
                       &light = m_scratch->light;
   known.clear();
   open.clear();
   steady.clear();
+  auto around = [](const vpRect &box, double more) {
+    return widened(box, halo + more / std::max(1.0, std::min(box.getWidth(), box.getHeight())));
+  };
   double noise = 0; // grey levels
   for (const vpLampObservation &lamp : m_observations) {
-    const vpRect box = boxOf(lamp.outline);
-    const double wider = halo + beyond / std::max(1.0, std::min(box.getWidth(), box.getHeight()));
-    known.push_back(widened(box, wider));
+    known.push_back(around(boxOf(lamp.outline), beyond));
     noise = std::max(noise, lamp.noise);
   }
   for (const Steady &each : m_steady) {
     if (each.until >= frame.timestamp) {
-      steady.push_back(each.box);
+      steady.push_back(around(each.box, beyondSteady));
     }
   }
   // Where a lamp is expected, what told nothing of one may be a part of it.
@@ -228,19 +229,19 @@ void vpLampTracker::moveSteady(double time)
     steady.box.moveCenter(moved.real(), moved.imag());
   }
   m_steady.erase(std::remove_if(m_steady.begin(), m_steady.end(), // was looked for, and not seen again
-                                [&](const Steady &steady) { return steady.until + steadiness < time; }),
+                                [&](const Steady &steady) { return steady.until + patience < time; }),
                  m_steady.end());
 }
 
-//! A region that tells nothing of any lamp. What has long been steady is trusted for as long again.
+//! A region that tells nothing of any lamp. What has long been steady is trusted for as long again, up to a
+//! bound.
 void vpLampTracker::rememberSteady(const vpLampObservation &seen, double time)
 {
-  static const double around = 0.1, beyond = 8, same = 0.5; // of its extent; px
+  static const double same = 0.5;
   if (tells(seen)) {
     return;
   }
   const vpRect box = boxOf(seen.outline);
-  const double wider = around + beyond / std::max(1.0, std::min(box.getWidth(), box.getHeight()));
   double since = time;
   const auto others = std::partition(m_steady.begin(), m_steady.end(), [&box](const Steady &steady) {
     return !(overlap(steady.box, box) > same);
@@ -250,8 +251,10 @@ void vpLampTracker::rememberSteady(const vpLampObservation &seen, double time)
   }
   m_steady.erase(others, m_steady.end());
   static const double ofCut = 0.25; // a part of it: it may be a lamp that comes into sight
+  static const double longest = 10; // times: a lamp that shone without a break may have begun to blink
   m_steady.push_back(
-      {widened(box, wider), since, time + (seen.cut ? ofCut : 1) * std::max(steadiness, time - since)});
+      {box, since,
+       time + (seen.cut ? ofCut : 1) * std::min(std::max(steadiness, time - since), longest * steadiness)});
 }
 
 //! Where to look: around each target, where lamps are expected, and the strip whose turn it is.
