@@ -272,35 +272,6 @@ std::vector<vpLedRoi> sifted(const std::vector<Group> &groups)
   return rois;
 }
 
-//! Moves a region found in a window to its place in the picture.
-void moveTo(vpLedRoi &roi, const cv::Point &origin, const cv::Size &picture)
-{
-  roi.box += origin;
-  for (vpLedChord &chord : roi.chords) {
-    chord.line += origin.y;
-    chord.first += origin.x;
-    chord.last += origin.x;
-  }
-  roi.cutAcross = roi.box.x <= 0 || roi.box.br().x >= picture.width;
-  roi.cutAlong = roi.box.y <= 0 || roi.box.br().y >= picture.height || vpChordShape::mayGoOn(roi, picture);
-}
-
-//! Larger by as much as the regions that its sides may cut, on these sides. Itself where there are none.
-cv::Rect grownAround(const cv::Rect &window, const std::vector<vpLedRoi> &rois, const cv::Rect &picture,
-                     double longestPeriod)
-{
-  cv::Rect grown = window;
-  for (const vpLedRoi &roi : rois) {
-    // A dark stripe may part a lamp from the rest that lies beyond the window.
-    const int gap = roi.steady ? 0 : 1 + static_cast<int>(std::min(0.5 * roi.box.width, longestPeriod));
-    const int side = std::max(roi.box.width, roi.box.height);
-    const cv::Point before(roi.box.x <= window.x ? side : 0, roi.box.y <= window.y + gap ? side : 0),
-        after(roi.box.br().x >= window.br().x ? side : 0, roi.box.br().y >= window.br().y - gap ? side : 0);
-    grown |= cv::Rect(roi.box.tl() - before, roi.box.br() + after);
-  }
-  return grown & picture;
-}
-
 } // namespace
 
 vpLinePicture::vpLinePicture(const vpImage<unsigned char> &I, bool alongColumns) : transposed(alongColumns)
@@ -398,37 +369,6 @@ std::vector<vpLedRoi> vpLedRoiDetector::lampsOf(const cv::Mat_<unsigned char> &l
   std::vector<vpLedRoi> rois = sifted(large);
   for (vpLedRoi &roi : rois) {
     roi.cutAlong = roi.cutAlong || vpChordShape::mayGoOn(roi, lines.size());
-  }
-  return rois;
-}
-
-std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window,
-                                               const std::vector<cv::Rect> &known) const
-{
-  static const int mostRounds = 3; // after which the whole picture is looked at
-  const cv::Rect picture(0, 0, lines.cols, lines.rows);
-  cv::Rect looked = window & picture;
-  std::vector<vpLedRoi> rois;
-  for (int round = 1; looked.area() > 0; ++round) {
-    std::vector<cv::Rect> knownThere = known;
-    for (cv::Rect &box : knownThere) {
-      box -= looked.tl();
-    }
-    // As much beside it tells what is dark: what is asked for may fill it.
-    const cv::Rect beside = vpGrown(looked, std::max(looked.width, looked.height) / 2) & picture;
-    rois = detect(lines(looked), vpBackground::of(lines(beside)), knownThere);
-    for (vpLedRoi &roi : rois) {
-      moveTo(roi, looked.tl(), picture.size());
-    }
-    // What came into view by looking farther was not asked for, and may be cut.
-    rois.erase(std::remove_if(rois.begin(), rois.end(),
-                              [&window](const vpLedRoi &roi) { return (roi.box & window).area() == 0; }),
-               rois.end());
-    const cv::Rect grown = round < mostRounds ? grownAround(looked, rois, picture, longestPeriod) : picture;
-    if (grownAround(looked, rois, picture, longestPeriod) == looked) {
-      break;
-    }
-    looked = grown;
   }
   return rois;
 }
