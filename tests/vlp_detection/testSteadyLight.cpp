@@ -66,6 +66,22 @@ TEST(SteadyLight, LampBeforeAPanelIsFound)
     }
 }
 
+// One stripe tells no period, and is no steady light either: more of them may be near.
+TEST(SteadyLight, OneStripeIsEvenAndALampIsNot)
+{
+  for (const double noise : {0.5, 2.0}) {
+    vpLampPicture picture =
+        pictureOf({panel(90, 90, 120, 14, 150), disc(200, 200, 30, 150, 10, 0.6, 0.2)}, 300, 300);
+    picture.noise = noise;
+    const std::vector<vpLedRoi> rois = found(picture);
+    ASSERT_EQ(rois.size(), 2u) << "noise " << noise;
+    for (const vpLedRoi &roi : rois) {
+      EXPECT_EQ(roi.even, roi.box.y < 150) << roi.box;
+      EXPECT_FALSE(roi.steady) << roi.box;
+    }
+  }
+}
+
 TEST(SteadyLight, OneStripeOfALampIsNone)
 {
   for (const double duty : {0.2, 0.5, 0.8})

@@ -125,6 +125,29 @@ TEST(DetectorWindows, GiveTheWholePicturesRegionsThatTheyShow)
   EXPECT_GT(cut, 50); // lamps cut by a side of the window were among them
 }
 
+TEST(DetectorWindows, WhatIsKnownIsLeftOutAndNothingElse)
+{
+  const vpImage<unsigned char> I = pictureWith().render();
+  const vpLinePicture lines(I, false);
+  const vpLedRoiDetector detector;
+  const std::vector<vpLedRoi> whole = detector.detect(lines.grey);
+  const cv::Rect all(0, 0, lines.grey.cols, lines.grey.rows);
+  const cv::Size more(8, 8);
+  for (size_t k = 0; k < whole.size(); ++k) {
+    const cv::Rect known(whole[k].box.tl() - cv::Point(more / 2), whole[k].box.size() + more);
+    const std::vector<vpLedRoi> rest = detector.detect(lines.grey, all, {known});
+    EXPECT_EQ(rest.size(), whole.size() - 1) << known << ": " << boxes(rest);
+    for (size_t i = 0; i < whole.size(); ++i) {
+      const bool found =
+          std::any_of(rest.begin(), rest.end(), [&](const vpLedRoi &each) { return same(each, whole[i]); });
+      EXPECT_EQ(found, i != k) << whole[i].box;
+    }
+    // Half of a lamp is not known.
+    const cv::Rect half(known.x, known.y, known.width, known.height / 2);
+    EXPECT_EQ(detector.detect(lines.grey, all, {half}).size(), whole.size()) << half;
+  }
+}
+
 TEST(DetectorWindows, WindowInsideALampGivesAllOfIt)
 {
   const vpLampPicture picture = pictureWith();

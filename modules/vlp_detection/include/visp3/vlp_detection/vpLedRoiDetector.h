@@ -68,8 +68,9 @@ struct VISP_EXPORT vpLedRoi {
   brighter than the darkest part of the picture, and may have the shape of a lamp; it does not blink as the
   lamps in front of it do, and these are chosen then. Small parts of a halo and of a larger region are left
   out at the end. What shines on for longer than a period of the slowest lamp, and dips in no strip of its
-  samples as a lamp does, is steady: it is not taken apart, and nothing is looked for in it. Where noise is so
-  strong that single pixels do not show a lamp, means of several along the lines are used as well.
+  samples as a lamp does, is steady: it is not taken apart, and nothing is looked for in it. Nor is it in one
+  stripe without a dip, which tells no period. Where noise is so strong that single pixels do not show a lamp,
+  means of several along the lines are used as well.
 */
 class VISP_EXPORT vpLedRoiDetector
 {
