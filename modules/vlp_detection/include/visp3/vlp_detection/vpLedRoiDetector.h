@@ -94,7 +94,7 @@ public:
                                const std::vector<cv::Rect> &known = {}) const;
 
   /*!
-    Where a window shows any light but that of known lamps: three samples in a row that are brighter than the
+    Where a window shows other light than that of known lamps. Light is three samples in a row that exceed the
     window's median by 8 grey levels and by six standard deviations of the noise. \param known Boxes that are
     left out, px. \param noise Grey levels. \param found Takes boxes, px, of light that is near to each other.
   */

@@ -34,9 +34,9 @@ BEGIN_VISP_NAMESPACE
   A picture that shows all lamps as the frame before did, pixel for pixel, is a repeated one: a sensor has
   noise. Its stripes are no new measurement and do not count again.
 
-  Steady regions (windows, lamps without stripes) are found by the search and not followed. For a while, the
-  longer the longer they have been there, their places are left out of the search, moved along with the lamps;
-  but not where a lamp is expected.
+  Steady regions (windows, lamps without stripes) are found by the search and not followed. For a while their
+  places are left out of the search, moved along with the lamps: for as long as they have been there, ten times
+  `steadiness` at most. Where a lamp is expected, they are looked at.
 
   \code
   vpLampTracker tracker(rig, map);
