@@ -35,8 +35,8 @@ BEGIN_VISP_NAMESPACE
   noise. Its stripes are no new measurement and do not count again.
 
   Steady regions (windows, lamps without stripes) are found by the search and not followed. For a while their
-  places are left out of the search, moved along with the lamps: for as long as they have been there, ten times
-  `steadiness` at most. Where a lamp is expected, they are looked at.
+  places are left out of the search, moved along with the lamps: for as long as they have been there, ten
+  times `steadiness` at most. Where a lamp is expected, they are looked at.
 
   \code
   vpLampTracker tracker(rig, map);
