@@ -107,6 +107,13 @@ Pattern hotSpot(double radius, double aside, double rest)
   };
 }
 
+//! Its middle is twice as bright as white, its rim is not.
+double twiceWhite(double u, double v)
+{
+  const double out = std::hypot(u, v) / 70;
+  return out > 1 ? 0.0 : 510 * (1 - 0.7 * out * out);
+}
+
 double inSigmas(const vpLampObservation &seen, const Eigen::Vector2d &middle)
 {
   const Eigen::Vector2d off = seen.point - middle;
@@ -132,10 +139,6 @@ TEST(Luminaires, PatchesDoNotHideTheStripes)
 // The middle of a lamp is clipped at half its light, edges of stripes included; its rim is not.
 TEST(Luminaires, ClippingMovesNoEdgeOfAStripe)
 {
-  const Pattern twiceWhite = [](double u, double v) {
-    const double out = std::hypot(u, v) / 70;
-    return out > 1 ? 0.0 : 510 * (1 - 0.7 * out * out);
-  };
   double squares = 0, mostDuty = 0;
   static const int phases = 20;
   for (int k = 0; k < phases; ++k) {
@@ -147,6 +150,19 @@ TEST(Luminaires, ClippingMovesNoEdgeOfAStripe)
   }
   EXPECT_LT(std::sqrt(squares / phases), 0.15); // Hz; a line's mean, half of it clipped, is off by 0.5
   EXPECT_LT(mostDuty, 0.001);
+}
+
+// Short gaps leave no line dark: what the lamp has on its darkest lines is its own light, too.
+TEST(Luminaires, ALampThatIsNeverDarkIsWhole)
+{
+  for (int k = 0; k < 10; ++k) {
+    const Luminaire lamp{{209.7, 160.4}, twiceWhite, 9500, 0.8, 0.1 * k};
+    const std::vector<vpLampObservation> seen = seenIn({lamp});
+    ASSERT_EQ(seen.size(), 1u) << "phase " << lamp.phase;
+    EXPECT_NEAR(seen[0].features.frequency, lamp.frequency, 5) << "phase " << lamp.phase;
+    EXPECT_NEAR(seen[0].outline.diameter(), 140, 5) << "phase " << lamp.phase;
+    EXPECT_LT((seen[0].point - lamp.middle).norm(), 0.3) << "phase " << lamp.phase;
+  }
 }
 
 TEST(Luminaires, HotSpotHasTheOutlineOfItsRim)

@@ -68,7 +68,7 @@ vpDemodulation::vpDemodulation(const cv::Mat_<unsigned char> &lines, const std::
       ++last;
     }
     if (last > line) {
-      addBands(line, last - 1, dark);
+      addBands(line, last - 1, dark, lit);
       line = last;
     }
   }
@@ -93,14 +93,16 @@ double vpDemodulation::background(const cv::Rect &lamp) const
   return *middle;
 }
 
-//! What shines on dark lines as well is no light of this lamp.
+//! What shines on dark lines by more than the lamp does is no light of this lamp; where the grey scale ends
+//! on lit lines it is not known.
 void vpDemodulation::dropOthers()
 {
-  static const float share = 0.4f, least = 3; // of the light; grey levels
+  static const float share = 0.4f, least = 3, white = 250; // of the light; grey levels
   const auto dark = static_cast<float>(background());
   for (vpLitBand &band : m_bands) {
     for (size_t x = 0; x < band.light.size(); ++x) {
-      if (band.dark[x] - dark > least + share * band.light[x]) {
+      const float light = band.light[x];
+      if (band.dark[x] - dark > least + (share + band.own) * light && band.dark[x] + light < white) {
         band.light[x] = 0;
       }
     }
@@ -122,7 +124,8 @@ void vpDemodulation::drop(const std::vector<cv::Rect> &others)
 }
 
 //! Of a stripe, a few lines each, against the dark lines nearest to the stripe.
-void vpDemodulation::addBands(int first, int last, const std::vector<int> &dark)
+void vpDemodulation::addBands(int first, int last, const std::vector<int> &dark,
+                              const std::vector<float> &lit)
 {
   static const int side = 2;    // samples
   static const long enough = 4; // dark lines to each side
@@ -130,20 +133,25 @@ void vpDemodulation::addBands(int first, int last, const std::vector<int> &dark)
   const auto from = after - std::min<long>(enough, after - dark.begin()),
              to = after + std::min<long>(enough, dark.end() - after);
   std::vector<float> reference(static_cast<size_t>(m_window.width), 0);
+  float least = 0; // share of the lamp's light, on dark lines
+  const auto references = static_cast<float>(to - from);
   for (auto line = from; line != to; ++line) {
     addLine(m_lines, *line, m_window, reference);
+    least += lit[static_cast<size_t>(*line)] / references;
   }
-  const auto references = static_cast<float>(to - from);
   const int count = std::max(1, (last - first + 1) / thick);
   for (int k = 0; k < count; ++k) {
     vpLitBand band;
     band.first = first + (last - first + 1) * k / count;
     band.last = first + (last - first + 1) * (k + 1) / count - 1;
     std::vector<float> sum(reference.size(), 0);
+    float most = 0;
+    const auto of = static_cast<float>(band.last - band.first + 1);
     for (int line = band.first; line <= band.last; ++line) {
       addLine(m_lines, line, m_window, sum);
+      most += lit[static_cast<size_t>(line)] / of;
     }
-    const auto of = static_cast<float>(band.last - band.first + 1);
+    band.own = least / (most - least);
     for (size_t x = 0; x < sum.size(); ++x) {
       sum[x] = sum[x] / of - reference[x] / references;
     }

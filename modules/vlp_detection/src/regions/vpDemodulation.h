@@ -22,6 +22,7 @@ inline cv::Rect vpGrown(const cv::Rect &box, int by)
 struct vpLitBand {
   int first, last;                // lines
   std::vector<float> light, dark; // dark: what the dark lines have
+  float own;                      // of dark, for each of light: the lamp's, which no exposure leaves dark
 };
 
 //! Samples of a band that are brighter than some level.
@@ -47,7 +48,7 @@ public:
   double brightest() const;
 
 private:
-  void addBands(int first, int last, const std::vector<int> &dark);
+  void addBands(int first, int last, const std::vector<int> &dark, const std::vector<float> &lit);
   void dropOthers();
 
   const cv::Mat_<unsigned char> &m_lines;

@@ -24,6 +24,12 @@ namespace
 
 const int even = 2, uneven = 4; // bends of an emitter's envelope
 
+//! Whether lit lines are as bright as the grey scale ends, or brighter.
+bool isClipped(const vpStripeProfile &profile)
+{
+  return *std::max_element(profile.light.begin(), profile.light.end()) >= profile.white;
+}
+
 //! How many bends the envelope may have.
 int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
 {
@@ -33,7 +39,7 @@ int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &p
   }
   const auto [dimmest, brightest] = std::minmax_element(
       peaks.begin(), peaks.end(), [&](size_t a, size_t b) { return profile.light[a] < profile.light[b]; });
-  const bool bent = profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
+  const bool bent = isClipped(profile) || profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
   return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
 }
 
@@ -163,12 +169,6 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
     return std::nullopt;
   }
   return word;
-}
-
-//! Whether lit lines are as bright as the grey scale ends, or brighter.
-bool isClipped(const vpStripeProfile &profile)
-{
-  return *std::max_element(profile.light.begin(), profile.light.end()) >= profile.white;
 }
 
 //! What was fitted is not what it sends: a word is, where it is known.

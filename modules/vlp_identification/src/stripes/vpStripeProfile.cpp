@@ -6,45 +6,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <visp3/vlp_core/vpBrighter.h>
 
 #include "vpBlackEnd.h"
+#include "vpWhiteEnd.h"
 
 BEGIN_VISP_NAMESPACE
 
 namespace
 {
 
-const unsigned char nearlyWhite = 250; // grey value from which there may have been more light than it shows
+//! From where to where a line lies inside the lamp, samples.
+struct Chord {
+  int line;
+  double from, to;
 
-using Chord = vpLedChord; // the samples of one line that lie inside the lamp
-
-//! Mean of the dimmest \e share of a line's samples, grey levels.
-double meanOfDimmest(const unsigned char *row, const Chord &chord, double share)
-{
-  std::vector<unsigned char> samples(row + chord.first, row + chord.last + 1);
-  const auto end = samples.begin() + std::max(1L, std::lround(share * static_cast<double>(samples.size())));
-  std::nth_element(samples.begin(), end - 1, samples.end());
-  return std::accumulate(samples.begin(), end, 0.) / static_cast<double>(end - samples.begin());
-}
-
-/*!
-  The share of a line's samples that the grey scale's bright end clips in no line, or a small one where it
-  clips all. A line's dimmest samples follow the modulation as all of them do, and are clipped last.
-*/
-double shareBelowWhite(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
-{
-  static const double small = 0.1;
-  double share = 1;
-  for (const Chord &chord : chords) {
-    const int samples = chord.last - chord.first + 1,
-              white = vpBrighter::count(lines[chord.line] + chord.first, samples, nearlyWhite - 1);
-    share = std::min(share, 1 - static_cast<double>(white) / samples);
-  }
-  return std::max(share, small);
-}
+  int first() const { return static_cast<int>(std::ceil(from)); }
+  int last() const { return static_cast<int>(std::floor(to)); }
+  int samples() const { return last() - first() + 1; }
+};
 
 //! The light of one line of the lamp, and that of its left and right half, grey levels.
 struct LineLight {
@@ -52,11 +33,11 @@ struct LineLight {
   int samples, half;
 
   LineLight(const unsigned char *row, const Chord &chord, double background)
-      : samples(chord.last - chord.first + 1), half(samples / 2)
+      : samples(chord.samples()), half(samples / 2)
   {
-    const int ofLeft = vpBrighter::sum(row + chord.first, half),
-              ofRight = vpBrighter::sum(row + chord.last - half + 1, half),
-              between = 2 * half < samples ? row[chord.first + half] : 0;
+    const int ofLeft = vpBrighter::sum(row + chord.first(), half),
+              ofRight = vpBrighter::sum(row + chord.last() - half + 1, half),
+              between = 2 * half < samples ? row[chord.first() + half] : 0;
     left = static_cast<double>(ofLeft) / half - background;
     right = static_cast<double>(ofRight) / half - background;
     whole = static_cast<double>(ofLeft + ofRight + between) / samples - background;
@@ -104,22 +85,22 @@ private:
 };
 
 //! The samples inside the lamp, line by line: well inside where it has no sharp edge, or none that is known.
+//! \param blur px, of its edge.
 std::vector<Chord> chordsOf(const cv::Mat_<unsigned char> &lines, const vpOutlineFit &fit,
-                            const vpLedRoi &roi)
+                            const vpLedRoi &roi, double blur)
 {
   static const double middle = 0.35, most = 0.7; // of a chord: of a soft lamp; of a region
   std::vector<Chord> chords;
   auto add = [&](int line, double first, double last, double share) {
-    const double half = 0.5 * share * (last - first);
-    const int left = std::max(0, static_cast<int>(std::ceil(0.5 * (first + last) - half))),
-              right = std::min(lines.cols - 1, static_cast<int>(std::floor(0.5 * (first + last) + half)));
-    if (right - left >= 2) {
-      chords.push_back({line, left, right});
+    const double half = 0.5 * share * (last - first), centre = 0.5 * (first + last);
+    const Chord chord{line, std::max(0.0, centre - half), std::min(lines.cols - 1.0, centre + half)};
+    if (chord.samples() > 2) {
+      chords.push_back(chord);
     }
   };
   const vpLampOutline &outline = fit.outline;
   if (outline.shape == vpLampOutline::Shape::region) {
-    for (const Chord &chord : roi.hull()) {
+    for (const vpLedChord &chord : roi.hull()) {
       if (chord.line >= roi.box.y && chord.line < roi.box.br().y) {
         add(chord.line, chord.first, chord.last, most);
       }
@@ -129,7 +110,7 @@ std::vector<Chord> chordsOf(const cv::Mat_<unsigned char> &lines, const vpOutlin
   const bool ellipse = outline.shape == vpLampOutline::Shape::ellipse; // else its sides along the lines hide
   const bool soft = fit.blur > 0.1 * outline.diameter() / 2;
   static const double beside = 1; // px: half a line, and half of the pixel that a sharp edge divides
-  const double margin = soft ? 0 : 2 * fit.blur + beside;
+  const double margin = soft ? 0 : 2 * blur + beside;
   const Eigen::Vector4d box = outline.box();
   const double top = ellipse ? std::max(0.0, box(1)) : std::max(roi.box.y + margin, box(1));
   const double bottom =
@@ -180,8 +161,8 @@ double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &ch
   }
   std::vector<vpBlackEnd::Line> shown;
   for (size_t i = 0; i < chords.size(); ++i) {
-    const int samples = chords[i].last - chords[i].first + 1,
-              bright = vpBrighter::count(lines[chords[i].line] + chords[i].first, samples, 0);
+    const int samples = chords[i].samples(),
+              bright = vpBrighter::count(lines[chords[i].line] + chords[i].first(), samples, 0);
     shown.push_back({profile.light[i] + background, samples, samples - bright});
   }
   const vpBlackEnd end(shown, noise);
@@ -192,6 +173,29 @@ double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &ch
     profile.sigma[i] = std::max(profile.sigma[i], light.sigma / std::sqrt(shown[i].samples));
   }
   return background;
+}
+
+//! Whether the grey scale's bright end clips samples.
+bool isClipped(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
+{
+  return std::any_of(chords.begin(), chords.end(), [&lines](const Chord &chord) {
+    return vpBrighter::brightest(lines[chord.line] + chord.first(), chord.samples()) >=
+           vpWhiteEnd::nearlyWhite;
+  });
+}
+
+//! Takes the light of lines, which \e chords are, for what the grey scale's bright end spares of it.
+void takeSpared(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, vpWhiteEnd end,
+                vpStripeProfile &profile)
+{
+  for (const Chord &chord : chords) {
+    end.add(lines[chord.line], chord.from, chord.to);
+  }
+  const std::vector<vpWhiteEnd::Light> light = end.light();
+  for (size_t i = 0; i < light.size(); ++i) {
+    profile.light[i] = light[i].mean;
+    profile.sigma[i] = light[i].sigma;
+  }
 }
 
 } // namespace
@@ -211,23 +215,29 @@ double vpStripeProfile::depth() const
 vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                        const vpOutlineFit &fit, const vpLedRoi &roi)
 {
-  const std::vector<Chord> chords = chordsOf(lines, fit, roi);
+  static const double lens = 0.7; // px of blur, which light that grows inwards hides
+  std::vector<Chord> chords = chordsOf(lines, fit, roi, fit.blur);
+  const bool clipped = isClipped(lines, chords);
+  if (clipped) { // what counts lies beside the edge
+    chords = chordsOf(lines, fit, roi, std::max(lens, fit.blur));
+  }
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());
   profile.logExposureSigma = timing.logExposureSigma();
   Agreement agreement;
   const double noise = std::max(fit.noise, 0.3);
-  const double share = shareBelowWhite(lines, chords);
   for (const Chord &chord : chords) {
     const LineLight line(lines[chord.line], chord, fit.background);
     profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
-    profile.light.push_back(share < 1 ? meanOfDimmest(lines[chord.line], chord, share) - fit.background
-                                      : line.whole);
-    profile.sigma.push_back(noise / std::sqrt(share * line.samples));
+    profile.light.push_back(line.whole);
+    profile.sigma.push_back(noise / std::sqrt(line.samples));
     agreement.add(line, noise);
   }
+  if (clipped) {
+    takeSpared(lines, chords, vpWhiteEnd(fit.background, noise), profile);
+  }
   const double background = unclip(lines, chords, fit.background, noise, profile);
-  profile.white = nearlyWhite - background - subtractDarkest(profile.light);
+  profile.white = vpWhiteEnd::nearlyWhite - background - subtractDarkest(profile.light);
   profile.agreement = agreement.value();
   return profile;
 }

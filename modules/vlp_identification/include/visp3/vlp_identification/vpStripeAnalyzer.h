@@ -34,9 +34,8 @@ struct VISP_EXPORT vpStripeProfile {
     Samples count that lie wholly inside, of a quadrilateral in lines from the first to the last lit one of
     \e roi: its sides along the lines are hardly seen. Of a lamp with a soft edge only the middle strip
     counts, where its glow is even; where there is no outline, most of the hull of the region's chords.
-    Where the grey scale's bright end clips samples, the dimmest of each line count, as many as it spares in
-    all lines. A quantile commutes with clipping, a mean does not. The surroundings are no brighter than the
-    lamp's darkest lines.
+    Where the grey scale's bright end clips samples, a line's dimmest ones tell its light. A quantile commutes
+    with clipping, a mean does not. The surroundings are no brighter than the lamp's darkest lines.
   */
   static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                const vpOutlineFit &fit, const vpLedRoi &roi);
