@@ -9,6 +9,7 @@
 
 #include <visp3/vlp_core/vpBrighter.h>
 
+#include "recognition/vpNormalTail.h"
 #include "vpBlackEnd.h"
 #include "vpWhiteEnd.h"
 
@@ -146,6 +147,28 @@ double subtractDarkest(std::vector<double> &light)
   return below;
 }
 
+//! What each line shows, of a profile that \e chords are, before the surroundings' light is taken off.
+std::vector<vpBlackEnd::Line> shownBy(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords,
+                                      double background, const vpStripeProfile &profile)
+{
+  std::vector<vpBlackEnd::Line> shown;
+  for (size_t i = 0; i < chords.size(); ++i) {
+    const int samples = chords[i].samples(),
+              bright = vpBrighter::count(lines[chords[i].line] + chords[i].first(), samples, 0);
+    shown.push_back({profile.light[i] + background, samples, samples - bright});
+  }
+  return shown;
+}
+
+//! Whether the grey scale's dark end clips lines. \param noise Of a pixel, grey levels, about.
+bool touchesBlack(const std::vector<vpBlackEnd::Line> &shown, double noise)
+{
+  static const double rounding = 1, above = 2; // grey levels; deviations, from where means are as they seem
+  return noise >= rounding && std::any_of(shown.begin(), shown.end(), [noise](const vpBlackEnd::Line &line) {
+           return line.mean <= above * noise;
+         });
+}
+
 /*!
   Takes light and noise of the lines, which \e chords are, to what they were before the grey scale's dark end
   clipped them. \param noise Of a pixel, grey levels, about. \return The same of the surroundings, grey
@@ -154,16 +177,9 @@ double subtractDarkest(std::vector<double> &light)
 double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
               double noise, vpStripeProfile &profile)
 {
-  static const double rounding = 1, above = 2; // grey levels; deviations, from where means are as they seem
-  if (noise < rounding || chords.empty() ||
-      background + *std::min_element(profile.light.begin(), profile.light.end()) > above * noise) {
+  const std::vector<vpBlackEnd::Line> shown = shownBy(lines, chords, background, profile);
+  if (!touchesBlack(shown, noise)) {
     return background;
-  }
-  std::vector<vpBlackEnd::Line> shown;
-  for (size_t i = 0; i < chords.size(); ++i) {
-    const int samples = chords[i].samples(),
-              bright = vpBrighter::count(lines[chords[i].line] + chords[i].first(), samples, 0);
-    shown.push_back({profile.light[i] + background, samples, samples - bright});
   }
   const vpBlackEnd end(shown, noise);
   background = end.before(background).mean;
@@ -175,13 +191,51 @@ double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &ch
   return background;
 }
 
-//! Whether the grey scale's bright end clips samples.
-bool isClipped(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords)
+/*!
+  Whether the grey scale's bright end clips more samples than noise would lift that high. \param noise Of a
+  pixel, grey levels, about: what its dark end clips tells it better.
+*/
+bool isClipped(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
+               double noise, const vpStripeProfile &profile)
 {
-  return std::any_of(chords.begin(), chords.end(), [&lines](const Chord &chord) {
-    return vpBrighter::brightest(lines[chord.line] + chord.first(), chord.samples()) >=
-           vpWhiteEnd::nearlyWhite;
-  });
+  static const double factor = 2, sigmas = 4;
+  std::vector<int> white;
+  for (const Chord &chord : chords) {
+    white.push_back(
+        vpBrighter::count(lines[chord.line] + chord.first(), chord.samples(), vpWhiteEnd::nearlyWhite - 1));
+  }
+  if (std::all_of(white.begin(), white.end(), [](int count) { return count == 0; })) {
+    return false;
+  }
+  const std::vector<vpBlackEnd::Line> shown = shownBy(lines, chords, background, profile);
+  const double before = touchesBlack(shown, noise) ? vpBlackEnd(shown, noise).noise() : noise;
+  double all = 0, byNoise = 0; // samples
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const double above = (vpWhiteEnd::nearlyWhite - shown[i].mean) / before;
+    all += white[i];
+    byNoise += above > 1 ? shown[i].samples * vpNormalTail(above) : 0;
+  }
+  fprintf(stderr, "clip white %g byNoise %g noise %g before %g\n", all, byNoise, noise, before);
+  return all > factor * byNoise + sigmas * std::sqrt(byNoise);
+}
+
+//! Means of the lines' samples.
+vpStripeProfile meansOf(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
+                        const std::vector<Chord> &chords, double background, double noise)
+{
+  vpStripeProfile profile;
+  profile.exposure = std::hypot(timing.exposure(), timing.averaging());
+  profile.logExposureSigma = timing.logExposureSigma();
+  Agreement agreement;
+  for (const Chord &chord : chords) {
+    const LineLight line(lines[chord.line], chord, background);
+    profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
+    profile.light.push_back(line.whole);
+    profile.sigma.push_back(noise / std::sqrt(line.samples));
+    agreement.add(line, noise);
+  }
+  profile.agreement = agreement.value();
+  return profile;
 }
 
 //! Takes the light of lines, which \e chords are, for what the grey scale's bright end spares of it.
@@ -216,29 +270,16 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
                                        const vpOutlineFit &fit, const vpLedRoi &roi)
 {
   static const double lens = 0.7; // px of blur, which light that grows inwards hides
-  std::vector<Chord> chords = chordsOf(lines, fit, roi, fit.blur);
-  const bool clipped = isClipped(lines, chords);
-  if (clipped) { // what counts lies beside the edge
-    chords = chordsOf(lines, fit, roi, std::max(lens, fit.blur));
-  }
-  vpStripeProfile profile;
-  profile.exposure = std::hypot(timing.exposure(), timing.averaging());
-  profile.logExposureSigma = timing.logExposureSigma();
-  Agreement agreement;
   const double noise = std::max(fit.noise, 0.3);
-  for (const Chord &chord : chords) {
-    const LineLight line(lines[chord.line], chord, fit.background);
-    profile.time.push_back(timing.middle(static_cast<unsigned int>(chord.line)));
-    profile.light.push_back(line.whole);
-    profile.sigma.push_back(noise / std::sqrt(line.samples));
-    agreement.add(line, noise);
-  }
-  if (clipped) {
+  std::vector<Chord> chords = chordsOf(lines, fit, roi, fit.blur);
+  vpStripeProfile profile = meansOf(lines, timing, chords, fit.background, noise);
+  if (isClipped(lines, chords, fit.background, noise, profile)) {
+    chords = chordsOf(lines, fit, roi, std::max(lens, fit.blur)); // what counts lies beside the edge
+    profile = meansOf(lines, timing, chords, fit.background, noise);
     takeSpared(lines, chords, vpWhiteEnd(fit.background, noise), profile);
   }
   const double background = unclip(lines, chords, fit.background, noise, profile);
   profile.white = vpWhiteEnd::nearlyWhite - background - subtractDarkest(profile.light);
-  profile.agreement = agreement.value();
   return profile;
 }
 

@@ -74,10 +74,13 @@ private:
 
 void vpWhiteEnd::add(const unsigned char *row, double from, double to)
 {
+  const auto first = static_cast<int>(std::lround(from)), last = static_cast<int>(std::lround(to));
   std::array<double, 256> samples{}; // of each grey value, as far as they lie inside
-  for (auto i = static_cast<int>(std::lround(from)); i <= std::lround(to); ++i) {
-    samples[row[i]] += std::min(i + 0.5, to) - std::max(i - 0.5, from);
+  for (int i = first + 1; i < last; ++i) {
+    ++samples[row[i]];
   }
+  samples[row[first]] += first + 0.5 - from;
+  samples[row[last]] += to - last + 0.5;
   Line line{{}, 0, to - from};
   const double share = line.samples / shares;
   double sum = 0, wanted = share;
