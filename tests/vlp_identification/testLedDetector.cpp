@@ -285,34 +285,40 @@ TEST(LedDetector, ClippedStripesAreAsUncertainAsTheyAre)
   EXPECT_LT(std::sqrt(duty / count), 2);
 }
 
-//! Black clips the noise of dark lines, and makes these brighter than they are: no pulse is shorter for it.
-TEST(LedDetector, NoiseThatBlackClipsLeavesDutiesAsTheyAre)
+//! Both ends of the grey scale clip noise. What black clips makes dark lines brighter, and what white clips
+//! makes lit lines darker; no pulse is shorter or longer for it.
+TEST(LedDetector, NoiseThatTheGreyScaleClipsLeavesDutiesAsTheyAre)
 {
-  double squares = 0, sum = 0; // of normalised errors
-  int count = 0;
-  for (int phase = 0; phase < 40; ++phase) {
-    vpLampPicture painted = fourLampPicture();
-    painted.background = 3;
-    painted.noise = 25;
-    painted.seed = static_cast<unsigned int>(phase + 1);
-    painted.lamps.resize(1);
-    painted.lamps[0].centre = {200.3, 160.6};
-    painted.lamps[0].a = painted.lamps[0].b = 75;
-    painted.lamps[0].frequency = 5000 + 31.7 * phase;
-    painted.lamps[0].phase = phase / 40.0;
-    painted.lamps[0].pwm(0.3);
-    vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
-    detector.detect(painted.render());
-    ASSERT_FALSE(detector.observations().empty());
-    const vpStripeFeatures &seen = detector.observations()[0].features;
-    const double off = (seen.duty - 0.3) / seen.dutySigma;
-    ASSERT_TRUE(std::isfinite(off));
-    squares += off * off;
-    sum += off;
-    ++count;
+  for (const double amplitude : {150.0, 190.0}) {
+    double squares = 0, sum = 0; // of normalised errors
+    int count = 0;
+    for (int phase = 0; phase < 40; ++phase) {
+      vpLampPicture painted = fourLampPicture();
+      painted.background = 3;
+      painted.noise = 25;
+      painted.seed = static_cast<unsigned int>(phase + 1);
+      painted.lamps.resize(1);
+      painted.lamps[0].centre = {200.3, 160.6};
+      painted.lamps[0].a = painted.lamps[0].b = 75;
+      painted.lamps[0].amplitude = amplitude;
+      painted.lamps[0].frequency = 5000 + 31.7 * phase;
+      painted.lamps[0].phase = phase / 40.0;
+      painted.lamps[0].pwm(0.3);
+      vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
+      detector.detect(painted.render());
+      ASSERT_FALSE(detector.observations().empty());
+      const vpStripeFeatures &seen = detector.observations()[0].features;
+      EXPECT_EQ(seen.dutyClipped, 0) << amplitude;
+      const double off = (seen.duty - 0.3) / seen.dutySigma;
+      ASSERT_TRUE(std::isfinite(off)) << amplitude;
+      squares += off * off;
+      sum += off;
+      ++count;
+    }
+    const double rms = std::sqrt(squares / count);
+    EXPECT_LT(rms, 1.5) << amplitude;
+    EXPECT_LT(std::abs(sum) / count, 3 * rms / std::sqrt(count)) << amplitude; // no bias
   }
-  EXPECT_LT(std::sqrt(squares / count), 1.5);
-  EXPECT_LT(std::abs(sum) / count, 3 / std::sqrt(count));
 }
 
 //! Two periods of two pulses have the edges of four: more than enough for a frequency.

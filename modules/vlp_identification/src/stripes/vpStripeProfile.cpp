@@ -215,7 +215,6 @@ bool isClipped(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &c
     all += white[i];
     byNoise += above > 1 ? shown[i].samples * vpNormalTail(above) : 0;
   }
-  fprintf(stderr, "clip white %g byNoise %g noise %g before %g\n", all, byNoise, noise, before);
   return all > factor * byNoise + sigmas * std::sqrt(byNoise);
 }
 
