@@ -5,9 +5,9 @@
 // Which ids the detector reads off luminaires of many emission patterns, drawn and taken off real pictures,
 // and how far off their middles are: the table of tests/bench/luminaires.md.
 //
-// bench_luminaires [LAMPS of each family] [FAMILY|all|drawn|real] [SEED] [linear|phone] [FOLDER]
+// bench_luminaires [LAMPS of each family] [FAMILY|all|drawn|real] [SEED] [linear|phone|clipped] [FOLDER]
 // (540 all 1 linear). Real families need VLP_INPUT_IMAGE_PATH. A phone's pictures have a tone curve of 2.2
-// and are JPEGs of quality 90. A folder gets rig, map and picture of each trial that is not all right.
+// and are JPEGs of quality 90. Clipped ones are 1 to 4 times as bright as white. A folder gets rig, map and picture of each trial that is not all right.
 
 #include <cstdio>
 #include <cstdlib>
@@ -192,10 +192,14 @@ int main(int argc, char **argv)
   const int lamps = argc > 1 ? std::atoi(argv[1]) : 540;
   const std::string which = argc > 2 ? argv[2] : "all";
   const auto seed = static_cast<unsigned int>(argc > 3 ? std::atoi(argv[3]) : 1);
+  const std::string pictures = argc > 4 ? argv[4] : "linear";
   vpHalfRealRanges ranges;
-  if (argc > 4 && std::string(argv[4]) == "phone") {
+  if (pictures == "phone") {
     ranges.gamma = 2.2;
     ranges.jpeg = 90;
+  } else if (pictures == "clipped") {
+    ranges.leastLevel = 255;
+    ranges.mostLevel = 4 * 255;
   }
   std::cout.setstate(std::ios::failbit); // sets tell which pictures they read
   static const int patterns = 16;        // of each drawn family
