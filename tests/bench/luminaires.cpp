@@ -7,7 +7,8 @@
 //
 // bench_luminaires [LAMPS of each family] [FAMILY|all|drawn|real] [SEED] [linear|phone|clipped] [FOLDER]
 // (540 all 1 linear). Real families need VLP_INPUT_IMAGE_PATH. A phone's pictures have a tone curve of 2.2
-// and are JPEGs of quality 90. Clipped ones are 1 to 4 times as bright as white. A folder gets rig, map and picture of each trial that is not all right.
+// and are JPEGs of quality 90. Clipped ones are 1 to 4 times as bright as white. A folder gets rig, map and
+// picture of each trial that is not all right.
 
 #include <cstdio>
 #include <cstdlib>

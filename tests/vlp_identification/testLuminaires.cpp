@@ -152,6 +152,22 @@ TEST(Luminaires, ClippingMovesNoEdgeOfAStripe)
   EXPECT_LT(mostDuty, 0.001);
 }
 
+// Where white clips the light, the edge of a brighter side seems to lie farther out. Lines that are dim
+// enough show how uneven the light is.
+TEST(Luminaires, ClippingDoesNotHideThatLightIsUneven)
+{
+  const auto sigmaOf = [](double slope, double phase) { // of the middle, px
+    const Pattern slanted = [slope](double u, double v) {
+      return std::hypot(u, v) > 60 ? 0.0 : 255 * (1.5 + slope * (0.7 * u + 0.3 * v) / 60);
+    };
+    const std::vector<vpLampObservation> seen = seenIn({{{209.6, 160.7}, slanted, 2000, 0.5, phase}});
+    return seen.size() == 1 && seen[0].id == "L2000" ? std::sqrt(seen[0].covariance.trace()) : NAN;
+  };
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_GT(sigmaOf(1, 0.2 * k), 3 * sigmaOf(0, 0.2 * k)) << k;
+  }
+}
+
 // Short gaps leave no line dark: what the lamp has on its darkest lines is its own light, too.
 TEST(Luminaires, ALampThatIsNeverDarkIsWhole)
 {

@@ -232,7 +232,8 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
 template <class Model>
 double vpEdgeFit<Model>::evenness() const
 {
-  double edges = 0, peaks = 0;
+  static const double nearlyWhite = 250; // such peaks may have been any brighter: other lines tell, if any
+  double edges = 0, peaks = 0, sparedEdges = 0, sparedPeaks = 0;
   for (const EightLines &lines : m_memory->ends) {
     for (int lane = 0; lane < vpLanes::count; ++lane) {
       const int line = lines.line[static_cast<size_t>(lane)];
@@ -247,13 +248,17 @@ double vpEdgeFit<Model>::evenness() const
           left < right ? vpBrighter::brightest((*m_lines)[line] + left, right - left + 1) : 0.0;
       for (const vpLineEnds<N> &end : lines.sides) {
         if (end.valid[lane] != 0) {
-          edges += std::max(0.f, end.amplitude[lane]);
-          peaks += std::max(0.0, peak - end.background[lane]);
+          const double edge = std::max(0.f, end.amplitude[lane]),
+                       light = std::max(0.0, peak - end.background[lane]);
+          edges += edge;
+          peaks += light;
+          sparedEdges += peak < nearlyWhite ? edge : 0;
+          sparedPeaks += peak < nearlyWhite ? light : 0;
         }
       }
     }
   }
-  return peaks > 0 ? edges / peaks : 0;
+  return sparedPeaks > 0 ? sparedEdges / sparedPeaks : peaks > 0 ? edges / peaks : 0;
 }
 
 template <class Model>
