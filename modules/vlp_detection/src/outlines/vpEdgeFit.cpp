@@ -232,7 +232,6 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
 template <class Model>
 double vpEdgeFit<Model>::evenness() const
 {
-  static const double nearlyWhite = 250; // such peaks may have been any brighter: other lines tell, if any
   double edges = 0, peaks = 0, sparedEdges = 0, sparedPeaks = 0;
   for (const EightLines &lines : m_memory->ends) {
     for (int lane = 0; lane < vpLanes::count; ++lane) {
@@ -252,8 +251,10 @@ double vpEdgeFit<Model>::evenness() const
                        light = std::max(0.0, peak - end.background[lane]);
           edges += edge;
           peaks += light;
-          sparedEdges += peak < nearlyWhite ? edge : 0;
-          sparedPeaks += peak < nearlyWhite ? light : 0;
+          if (peak < vpBrighter::nearlyWhite) { // others may have been any brighter
+            sparedEdges += edge;
+            sparedPeaks += light;
+          }
         }
       }
     }

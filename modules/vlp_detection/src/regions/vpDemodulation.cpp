@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <visp3/vlp_core/vpBrighter.h>
+
 BEGIN_VISP_NAMESPACE
 
 namespace
@@ -97,12 +99,13 @@ double vpDemodulation::background(const cv::Rect &lamp) const
 //! on lit lines it is not known.
 void vpDemodulation::dropOthers()
 {
-  static const float share = 0.4f, least = 3, white = 250; // of the light; grey levels
+  static const float share = 0.4f, least = 3; // of the light; grey levels
   const auto dark = static_cast<float>(background());
   for (vpLitBand &band : m_bands) {
     for (size_t x = 0; x < band.light.size(); ++x) {
       const float light = band.light[x];
-      if (band.dark[x] - dark > least + (share + band.own) * light && band.dark[x] + light < white) {
+      if (band.dark[x] - dark > least + (share + band.own) * light &&
+          band.dark[x] + light < vpBrighter::nearlyWhite) {
         band.light[x] = 0;
       }
     }

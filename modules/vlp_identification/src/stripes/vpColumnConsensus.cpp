@@ -255,7 +255,6 @@ double noiseOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
 Strips stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const vpLampOutline &outline,
                 int width)
 {
-  static const unsigned char nearlyWhite = 250;
   static const size_t few = 20;
   Strips strips{Eigen::ArrayXXd(box.width / width, box.height),
                 Eigen::ArrayXXd(box.width / width, box.height)};
@@ -269,8 +268,10 @@ Strips stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const
     for (int k = 0, first = box.x; k < strips.light.rows(); ++k, first += width) {
       const unsigned char *row = lines[line] + first;
       strips.light(k, i) = static_cast<double>(vpBrighter::sum(row, width)) / width;
-      strips.seen(k, i) =
-          first > from && first + width - 1 < to && vpBrighter::brightest(row, width) < nearlyWhite ? 1 : 0;
+      strips.seen(k, i) = first > from && first + width - 1 < to &&
+                                  vpBrighter::brightest(row, width) < vpBrighter::nearlyWhite
+                              ? 1
+                              : 0;
     }
   }
   if (strips.light.size() > 0) {

@@ -161,12 +161,11 @@ std::vector<vpBlackEnd::Line> shownBy(const cv::Mat_<unsigned char> &lines, cons
 }
 
 //! Whether the grey scale's dark end clips lines. \param noise Of a pixel, grey levels, about.
-bool touchesBlack(const std::vector<vpBlackEnd::Line> &shown, double noise)
+bool touchesBlack(const vpStripeProfile &profile, double background, double noise)
 {
   static const double rounding = 1, above = 2; // grey levels; deviations, from where means are as they seem
-  return noise >= rounding && std::any_of(shown.begin(), shown.end(), [noise](const vpBlackEnd::Line &line) {
-           return line.mean <= above * noise;
-         });
+  return noise >= rounding && !profile.light.empty() &&
+         background + *std::min_element(profile.light.begin(), profile.light.end()) <= above * noise;
 }
 
 /*!
@@ -177,10 +176,10 @@ bool touchesBlack(const std::vector<vpBlackEnd::Line> &shown, double noise)
 double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
               double noise, vpStripeProfile &profile)
 {
-  const std::vector<vpBlackEnd::Line> shown = shownBy(lines, chords, background, profile);
-  if (!touchesBlack(shown, noise)) {
+  if (!touchesBlack(profile, background, noise)) {
     return background;
   }
+  const std::vector<vpBlackEnd::Line> shown = shownBy(lines, chords, background, profile);
   const vpBlackEnd end(shown, noise);
   background = end.before(background).mean;
   for (size_t i = 0; i < shown.size(); ++i) {
@@ -198,22 +197,23 @@ double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &ch
 bool isClipped(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
                double noise, const vpStripeProfile &profile)
 {
-  static const double factor = 2, sigmas = 4;
+  static const double factor = 2, sigmas = 4; // of what noise lifts, known about; of chance
   std::vector<int> white;
   for (const Chord &chord : chords) {
     white.push_back(
-        vpBrighter::count(lines[chord.line] + chord.first(), chord.samples(), vpWhiteEnd::nearlyWhite - 1));
+        vpBrighter::count(lines[chord.line] + chord.first(), chord.samples(), vpBrighter::nearlyWhite - 1));
   }
   if (std::all_of(white.begin(), white.end(), [](int count) { return count == 0; })) {
     return false;
   }
-  const std::vector<vpBlackEnd::Line> shown = shownBy(lines, chords, background, profile);
-  const double before = touchesBlack(shown, noise) ? vpBlackEnd(shown, noise).noise() : noise;
+  if (touchesBlack(profile, background, noise)) {
+    noise = vpBlackEnd(shownBy(lines, chords, background, profile), noise).noise();
+  }
   double all = 0, byNoise = 0; // samples
-  for (size_t i = 0; i < shown.size(); ++i) {
-    const double above = (vpWhiteEnd::nearlyWhite - shown[i].mean) / before;
+  for (size_t i = 0; i < chords.size(); ++i) {
+    const double above = (vpBrighter::nearlyWhite - background - profile.light[i]) / noise;
     all += white[i];
-    byNoise += above > 1 ? shown[i].samples * vpNormalTail(above) : 0;
+    byNoise += above > 1 ? chords[i].samples() * vpNormalTail(above) : 0;
   }
   return all > factor * byNoise + sigmas * std::sqrt(byNoise);
 }
@@ -278,7 +278,7 @@ vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, con
     takeSpared(lines, chords, vpWhiteEnd(fit.background, noise), profile);
   }
   const double background = unclip(lines, chords, fit.background, noise, profile);
-  profile.white = vpWhiteEnd::nearlyWhite - background - subtractDarkest(profile.light);
+  profile.white = vpBrighter::nearlyWhite - background - subtractDarkest(profile.light);
   return profile;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <visp3/vlp_core/vpBrighter.h>
 
 BEGIN_VISP_NAMESPACE
 
@@ -93,7 +94,7 @@ void vpWhiteEnd::add(const unsigned char *row, double from, double to)
     sum += wanted * static_cast<double>(grey);
     samples[grey] -= wanted;
     line.mean[k] = sum / (share * static_cast<double>(k + 1)) - m_background;
-    line.spared += grey < nearlyWhite ? 1 : 0;
+    line.spared += grey < vpBrighter::nearlyWhite ? 1 : 0;
   }
   m_lines.push_back(line);
 }

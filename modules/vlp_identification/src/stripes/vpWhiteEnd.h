@@ -22,8 +22,6 @@ BEGIN_VISP_NAMESPACE
 class vpWhiteEnd
 {
 public:
-  static constexpr unsigned char nearlyWhite = 250; // from here on there may have been more light
-
   //! The light of a line's dimmest samples, grey levels: as many as are spared on all lines, a tenth or more.
   struct Light {
     double mean, sigma;

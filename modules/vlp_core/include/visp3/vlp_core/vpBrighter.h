@@ -20,6 +20,7 @@ namespace vpBrighter
 {
 constexpr int block = 64; // samples
 constexpr int width = cv::v_uint8x16::nlanes;
+constexpr unsigned char nearlyWhite = 250; // grey value from which on there may have been more light
 
 //! So many samples, fewer than \e width; the rest is black.
 inline cv::v_uint8x16 rest(const unsigned char *row, int samples)
