@@ -148,8 +148,8 @@ TEST(Luminaires, ClippingMovesNoEdgeOfAStripe)
     squares += std::pow(seen[0].features.frequency - lamp.frequency, 2);
     mostDuty = std::max(mostDuty, std::abs(seen[0].features.duty - lamp.duty));
   }
-  EXPECT_LT(std::sqrt(squares / phases), 0.15); // Hz; a line's mean, half of it clipped, is off by 0.5
-  EXPECT_LT(mostDuty, 0.001);
+  EXPECT_LT(std::sqrt(squares / phases), 0.04); // Hz; the dimmest tenth alone is off by 0.05, all by 0.5
+  EXPECT_LT(mostDuty, 0.0004);
 }
 
 // Where white clips the light, the edge of a brighter side seems to lie farther out. Lines that are dim
