@@ -22,7 +22,7 @@ inline cv::Rect vpGrown(const cv::Rect &box, int by)
 struct vpLitBand {
   int first, last;                // lines
   std::vector<float> light, dark; // dark: what the dark lines have
-  float own;                      // of dark, for each of light: the lamp's, which no exposure leaves dark
+  float own; // the lamp's own part of dark, as a share of light: above 0 where short gaps leave no line dark
 };
 
 //! Samples of a band that are brighter than some level.

@@ -14,10 +14,10 @@ BEGIN_VISP_NAMESPACE
 
 /*!
   The bright end of the grey scale: it clips a lamp's brightest samples, more of them on brighter lines. The
-  mean C of a line's dimmest samples follows the modulation as that of all does (a quantile commutes with
-  clipping, a mean does not). How C of two shares of the samples compare depends on the lamp's emission, which
-  changes smoothly along the lines: C(more) = C(few) r(v), r a polynomial, by least squares over the lines on
-  which more are spared. Each line is told by the share that makes its light most certain.
+  mean C of a line's dimmest samples follows the modulation as that of all does: a quantile commutes with
+  clipping, a mean does not. The ratio of C of more samples to C of few is the emission's, which changes
+  smoothly along the lines: C(more) = C(few) r(v). The polynomial r is found by least squares over the lines
+  that are spared more. Each line is told by the share that makes its light most certain.
 */
 class vpWhiteEnd
 {
