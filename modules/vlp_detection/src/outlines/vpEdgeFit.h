@@ -108,8 +108,8 @@ public:
   //! \param blur px, to begin with; 0: one that suits the size.
   bool run(const cv::Rect &box, double shapeSigma, const Steps &steps, double blur = 0);
   vpOutlineFit result() const;
-  //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc. By lines
-  //! that white does not clip, where there are any.
+  //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc. By
+  //! lines that white does not clip, where there are any.
   double evenness() const;
   //! Mean squared residual of all lit ends, the outliers among them too, grey levels^2; and how many pixels
   //! that is of.
