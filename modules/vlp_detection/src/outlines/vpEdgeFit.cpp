@@ -230,9 +230,10 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
 }
 
 template <class Model>
-double vpEdgeFit<Model>::evenness() const
+double vpEdgeFit<Model>::evenness()
 {
-  double edges = 0, peaks = 0, sparedEdges = 0, sparedPeaks = 0;
+  double edges = 0, peaks = 0;
+  m_clipped = false;
   for (const EightLines &lines : m_memory->ends) {
     for (int lane = 0; lane < vpLanes::count; ++lane) {
       const int line = lines.line[static_cast<size_t>(lane)];
@@ -245,21 +246,50 @@ double vpEdgeFit<Model>::evenness() const
                 right = std::min(m_lines->cols - 1, static_cast<int>(last) + 1);
       const double peak =
           left < right ? vpBrighter::brightest((*m_lines)[line] + left, right - left + 1) : 0.0;
+      m_clipped = m_clipped || peak >= vpBrighter::nearlyWhite;
       for (const vpLineEnds<N> &end : lines.sides) {
         if (end.valid[lane] != 0) {
-          const double edge = std::max(0.f, end.amplitude[lane]),
-                       light = std::max(0.0, peak - end.background[lane]);
-          edges += edge;
-          peaks += light;
-          if (peak < vpBrighter::nearlyWhite) { // others may have been any brighter
-            sparedEdges += edge;
-            sparedPeaks += light;
-          }
+          edges += std::max(0.f, end.amplitude[lane]);
+          peaks += std::max(0.0, peak - end.background[lane]);
         }
       }
     }
   }
-  return sparedPeaks > 0 ? sparedEdges / sparedPeaks : peaks > 0 ? edges / peaks : 0;
+  return peaks > 0 ? edges / peaks : 0;
+}
+
+template <class Model>
+std::optional<double> vpEdgeFit<Model>::clippedEvenness() const
+{
+  static const int shortest = 5; // samples
+  if (!m_clipped) {
+    return std::nullopt;
+  }
+  double least = 0, most = 0;
+  for (const EightLines &lines : m_memory->ends) {
+    for (int lane = 0; lane < vpLanes::count; ++lane) {
+      const int line = lines.line[static_cast<size_t>(lane)];
+      double first, last;
+      if (lines.sides[0].valid[lane] == 0 || lines.sides[1].valid[lane] == 0 ||
+          !m_model.stretch((*m_v)[static_cast<size_t>(line)], -m_reach, first, last)) {
+        continue;
+      }
+      const vpLineStretch inside(first, last, m_lines->cols);
+      const int samples = inside.to - inside.from + 1;
+      const unsigned char *row = (*m_lines)[line] + inside.from;
+      if (samples < shortest || vpBrighter::brightest(row, samples) >= vpBrighter::nearlyWhite) {
+        continue;
+      }
+      const double mean = static_cast<double>(vpBrighter::sum(row, samples)) / samples;
+      for (const int at : {1, samples - 2}) { // three samples together: a dim line's own noise is not uneven
+        const double rim = static_cast<double>(vpBrighter::sum(row + at - 1, 3)) / 3,
+                     dark = lines.sides[at > 1 ? 1 : 0].background[lane];
+        least += std::max(0.0, std::min(rim, mean) - dark);
+        most += std::max(0.0, std::max(rim, mean) - dark);
+      }
+    }
+  }
+  return most > 0 ? std::optional<double>(least / most) : std::nullopt;
 }
 
 template <class Model>

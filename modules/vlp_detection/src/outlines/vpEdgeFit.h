@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -108,9 +109,14 @@ public:
   //! \param blur px, to begin with; 0: one that suits the size.
   bool run(const cv::Rect &box, double shapeSigma, const Steps &steps, double blur = 0);
   vpOutlineFit result() const;
-  //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc. By
-  //! lines that white does not clip, where there are any.
-  double evenness() const;
+  //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc.
+  double evenness();
+  /*!
+    Of a lamp that white clips: the light a little inside its edge over that of all of the line, or the
+    reverse, whichever is less; by lines that white spares, 1 for an even disc. The clipped edge lies too far
+    out for their contrast to tell. Nothing of other lamps. After evenness().
+  */
+  std::optional<double> clippedEvenness() const;
   //! Mean squared residual of all lit ends, the outliers among them too, grey levels^2; and how many pixels
   //! that is of.
   double misfit() const { return m_misfit; }
@@ -156,6 +162,7 @@ private:
   double m_prior = 0;
   double m_members = 0; // ends that take part
   double m_kept = 0, m_shining = 0;
+  bool m_clipped = false; // by white, some lines
   Memory *m_memory;
 };
 

@@ -178,6 +178,13 @@ void addGrowthVariance(vpOutlineFit &fit, double evenness)
   fit.outline.centreCovariance += sigma * sigma * Eigen::Matrix2d::Identity();
 }
 
+//! Of a lamp that white clips the edge lies farther out by about a lens's blur where it is brighter.
+void addClippingVariance(vpOutlineFit &fit, double evenness)
+{
+  const double sigma = fit.clippedBlur() * (1 / evenness - 1);
+  fit.outline.centreCovariance += sigma * sigma * Eigen::Matrix2d::Identity();
+}
+
 //! Where edges are uneven and leave much of the light about them unexplained, some are not the lamp's.
 void addGhostVariance(vpLampOutline &ellipse, double misfit, double light)
 {
@@ -287,6 +294,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   }
   bool even = evenness > evenEdge;
   double kept = isEllipse ? ellipse.kept() : 0, edges = evenness; // of what is taken at last
+  std::optional<double> clipped = isEllipse ? ellipse.clippedEvenness() : std::nullopt;
   static const double round = 0.015; // share of the radius: no rectangle is that near to an ellipse
   const bool maySquare = !even || ellipseMisfit > round * start.radius();
   const double sidesMisfit =
@@ -301,10 +309,12 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
         if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
           kept = sides.kept();
           edges = sides.evenness();
+          clipped = sides.clippedEvenness();
         }
       } else {
         kept = sides.kept();
         edges = sides.evenness();
+        clipped = sides.clippedEvenness();
         best = sides.result();
         best.outline.otherShape = 0; // no ellipse fits at all
       }
@@ -329,6 +339,9 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   }
   if (sound && best.outline.shape != vpLampOutline::Shape::region) {
     addGrowthVariance(best, edges);
+    if (clipped) {
+      addClippingVariance(best, *clipped);
+    }
   }
   if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
     vpRimFit::addHiddenSides(best.outline, vpChordShape::longestGap(roi));

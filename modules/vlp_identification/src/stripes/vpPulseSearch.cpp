@@ -29,7 +29,7 @@ std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency
   std::vector<double> exposures{profile.exposure};
   if (profile.exposure * frequency > longest) {
     exposures.push_back(sharp / frequency);
-  } else if (profile.logExposureSigma > uncertain) {
+  } else if (profile.logEdgeSigma() > uncertain) {
     exposures.push_back(factor * profile.exposure);
     exposures.push_back(profile.exposure / factor);
   }

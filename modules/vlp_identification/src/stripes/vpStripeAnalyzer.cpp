@@ -24,12 +24,6 @@ namespace
 
 const int even = 2, uneven = 4; // bends of an emitter's envelope
 
-//! Whether lit lines are as bright as the grey scale ends, or brighter.
-bool isClipped(const vpStripeProfile &profile)
-{
-  return *std::max_element(profile.light.begin(), profile.light.end()) >= profile.white;
-}
-
 //! How many bends the envelope may have.
 int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &peaks)
 {
@@ -39,7 +33,7 @@ int envelopeOrderOf(const vpStripeProfile &profile, const std::vector<size_t> &p
   }
   const auto [dimmest, brightest] = std::minmax_element(
       peaks.begin(), peaks.end(), [&](size_t a, size_t b) { return profile.light[a] < profile.light[b]; });
-  const bool bent = isClipped(profile) || profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
+  const bool bent = profile.isClipped() || profile.light[*brightest] > evenEmitter * profile.light[*dimmest];
   return std::clamp(static_cast<int>(peaks.size()) - 1, even, bent ? uneven : even);
 }
 
@@ -213,7 +207,7 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
   }
   // A clipped line does not tell how bright it was, and so not how much of an edge is exposure: pulse and
   // exposure are known together only.
-  if (isClipped(profile)) {
+  if (profile.isClipped()) {
     features.dutyClipped = profile.exposure * features.frequency;
     features.dutySigma = std::hypot(features.dutySigma, features.dutyClipped);
   }
@@ -272,7 +266,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
       start = &search;
     }
   };
-  if (order > 0 && !isClipped(profile)) { // beyond the end of the grey scale nothing tells an even lamp
+  if (order > 0 && !profile.isClipped()) { // beyond the end of the grey scale nothing tells an even lamp
     alsoFrom(evenly.emplace(byAll.evenly(explained(), *this)));
   }
   if (!explained() && !byAll.candidates().empty()) {

@@ -194,8 +194,8 @@ double unclip(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &ch
   Whether the grey scale's bright end clips more samples than noise would lift that high. \param noise Of a
   pixel, grey levels, about: what its dark end clips tells it better.
 */
-bool isClipped(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
-               double noise, const vpStripeProfile &profile)
+bool reachesWhite(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
+                  double noise, const vpStripeProfile &profile)
 {
   static const double factor = 2, sigmas = 4; // of what noise lifts, known about; of chance
   std::vector<int> white;
@@ -237,21 +237,43 @@ vpStripeProfile meansOf(const cv::Mat_<unsigned char> &lines, const vpLineTiming
   return profile;
 }
 
-//! Takes the light of lines, which \e chords are, for what the grey scale's bright end spares of it.
-void takeSpared(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, vpWhiteEnd end,
-                vpStripeProfile &profile)
+/*!
+  Takes the light of lines, which \e chords are, for what the grey scale's bright end spares of it, where it
+  spares some of each line. Elsewhere their means have to do: as an edge of a stripe brightens, its mean rises
+  ever less, which nothing but its ends tells.
+*/
+void takeSpared(const cv::Mat_<unsigned char> &lines, const std::vector<Chord> &chords, double background,
+                double noise, vpStripeProfile &profile)
 {
+  static const double unstraight = 0.05; // of white, half way up
+  vpWhiteEnd end(background, noise);
   for (const Chord &chord : chords) {
     end.add(lines[chord.line], chord.from, chord.to);
   }
-  const std::vector<vpWhiteEnd::Light> light = end.light();
-  for (size_t i = 0; i < light.size(); ++i) {
-    profile.light[i] = light[i].mean;
-    profile.sigma[i] = light[i].sigma;
+  const std::vector<vpWhiteEnd::Light> spared = end.light();
+  const double white = vpBrighter::nearlyWhite - background;
+  const bool all = std::all_of(spared.begin(), spared.end(),
+                               [white](const vpWhiteEnd::Light &light) { return light.mean < white; });
+  for (size_t i = 0; i < spared.size(); ++i) {
+    const double share = std::clamp(profile.light[i] / white, 0.0, 1.0);
+    profile.light[i] = all ? spared[i].mean : profile.light[i];
+    profile.sigma[i] =
+        all ? spared[i].sigma : std::hypot(profile.sigma[i], 4 * unstraight * share * (1 - share) * white);
   }
 }
 
 } // namespace
+
+bool vpStripeProfile::isClipped() const
+{
+  return !light.empty() && *std::max_element(light.begin(), light.end()) >= white;
+}
+
+double vpStripeProfile::logEdgeSigma() const
+{
+  static const double shortened = 0.5; // by what of an edge is white, of a lamp of one to four times that
+  return isClipped() ? std::hypot(logExposureSigma, shortened) : logExposureSigma;
+}
 
 double vpStripeProfile::depth() const
 {
@@ -268,14 +290,13 @@ double vpStripeProfile::depth() const
 vpStripeProfile vpStripeProfile::along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                        const vpOutlineFit &fit, const vpLedRoi &roi)
 {
-  static const double lens = 0.7; // px of blur, which light that grows inwards hides
   const double noise = std::max(fit.noise, 0.3);
   std::vector<Chord> chords = chordsOf(lines, fit, roi, fit.blur);
   vpStripeProfile profile = meansOf(lines, timing, chords, fit.background, noise);
-  if (isClipped(lines, chords, fit.background, noise, profile)) {
-    chords = chordsOf(lines, fit, roi, std::max(lens, fit.blur)); // what counts lies beside the edge
+  if (reachesWhite(lines, chords, fit.background, noise, profile)) {
+    chords = chordsOf(lines, fit, roi, fit.clippedBlur()); // what counts lies beside the edge
     profile = meansOf(lines, timing, chords, fit.background, noise);
-    takeSpared(lines, chords, vpWhiteEnd(fit.background, noise), profile);
+    takeSpared(lines, chords, fit.background, noise, profile);
   }
   const double background = unclip(lines, chords, fit.background, noise, profile);
   profile.white = vpBrighter::nearlyWhite - background - subtractDarkest(profile.light);

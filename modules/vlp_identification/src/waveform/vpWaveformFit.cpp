@@ -30,8 +30,9 @@ vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &set
   m_light = Eigen::Map<const Eigen::ArrayXd>(profile.light.data(), n);
   m_given = Eigen::Map<const Eigen::ArrayXd>(envelope.data(), n);
   static const double shortest = 10, longest = 5, sigmas = 5; // times the stated exposure
-  m_logExposureSigma = std::hypot(m_settings.exposureTolerance, profile.logExposureSigma);
-  const double farthest = std::exp(sigmas * profile.logExposureSigma);
+  m_logEdgeSigma = profile.logEdgeSigma();
+  m_logExposureSigma = std::hypot(m_settings.exposureTolerance, m_logEdgeSigma);
+  const double farthest = std::exp(sigmas * m_logEdgeSigma);
   m_leastExposure = profile.exposure / std::max(shortest, farthest);
   m_mostExposure = profile.exposure * std::max(longest, farthest);
   // A dark line has some light of its neighbours, by blur and compression.
@@ -39,13 +40,6 @@ vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &set
   m_weight = (Eigen::Map<const Eigen::ArrayXd>(profile.sigma.data(), n).square() +
               (m_settings.modelError * m_light).square() + (spill * m_given).square())
                  .inverse();
-  static const double white = 0.02; // weight of a line that may have been any brighter
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (m_light(i) >= profile.white) {
-      m_white.push_back(i);
-      m_weight(i) *= white;
-    }
-  }
   // A dark lamp is about as dark as its surroundings, which the profile has no more.
   static const double glow = 0.05; // share of the lit lamp's light, standard deviation
   const double dark = std::max(1.0, glow * m_given.maxCoeff());
@@ -123,7 +117,7 @@ vpWaveformFit::Prior vpWaveformFit::prior(int parameter, const Vector &x) const
     // Student's t, its degrees of freedom those of the sum of a normal claim and of a lamp's own Cauchy
     // distribution (Welch 1947): a claim that is far more exact than it is true is forgiven.
     static const double asNormal = 1e6; // degrees of freedom
-    const double share = m_profile->logExposureSigma / m_settings.exposureTolerance,
+    const double share = m_logEdgeSigma / m_settings.exposureTolerance,
                  freedom = std::min(std::pow(1 + share * share, 2), asNormal),
                  log = std::log(x(exposure) / m_profile->exposure), perLog = m_logExposureSigma * x(exposure),
                  square = std::pow(log / m_logExposureSigma, 2);
@@ -192,9 +186,8 @@ double vpWaveformFit::cost(const Vector &x)
   }
   A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
   A(0, 0) += m_darkness;
-  // Bends of four times the envelope are one standard deviation; of a tenth where the grey scale hides how
-  // bright it is.
-  const double unbent = m_white.empty() ? 0.06 : 100;
+  // Bends of four times the envelope are one standard deviation.
+  static const double unbent = 0.06;
   for (int k = 2; k <= m_bends; ++k) {
     A(k, k) += unbent;
   }
@@ -312,24 +305,7 @@ bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k,
   for (int round = 0; round < 2 && m_bends > 1 && bendEnvelope(); ++round) {
     descend(20);
   }
-  for (int round = 0; round < 6 && brightenWhite(); ++round) {
-    descend(10);
-  }
   return m_x.allFinite() && m_cost < 1e299;
-}
-
-//! Takes lines that the grey scale cuts off for as bright as the fit has them (expectation of censored data,
-//! Dempster et al. 1977).
-bool vpWaveformFit::brightenWhite()
-{
-  const Eigen::ArrayXd expected = m_light - residuals();
-  for (Eigen::Index i : m_white) {
-    m_light(i) = std::max(m_profile->white, expected(i));
-  }
-  if (!m_white.empty()) {
-    prepareSums();
-  }
-  return !m_white.empty();
 }
 
 //! Takes what the polynomial found into the given envelope: where a lamp is ten times dimmer at its rim,

@@ -24,8 +24,8 @@ BEGIN_VISP_NAMESPACE
 
   Offset and envelope are linear and solved for at each step (variable projection, Golub and Pereyra 1973);
   Levenberg and Marquardt's method does the rest. A camera that sharpens makes lit lines beside dark ones
-  brighter: one more linear column. Lines that the grey scale cuts off are censored: they count as bright as
-  the fit has them.
+  brighter: one more linear column. Where the grey scale cuts off lit lines, the wave is as bright as white,
+  and of a shorter exposure: a trapezoid that is cut off is one.
 
   Where the lines leave gaps between their exposures, an edge of a pulse may lie anywhere in one: the cost is
   flat there and its curvature says nothing. So integrate() takes mean and standard deviation from the
@@ -157,7 +157,6 @@ private:
   void normalEquations(Matrix &H, Vector &g);
   void descend(int iterations);
   bool bendEnvelope();
-  bool brightenWhite();
   Eigen::ArrayXd envelope() const;
   Eigen::ArrayXd residuals() const;
   bool isFree(int parameter) const
@@ -195,6 +194,7 @@ private:
   double m_half = 1;                      // s
   double m_line = 0;                      // s, mean distance of the lines
   double m_startFrequency = 0;            // Hz
+  double m_logEdgeSigma;                  // as the profile states it
   double m_logExposureSigma;              // prior of the exposure's logarithm
   double m_leastExposure, m_mostExposure; // s
   bool m_freeExposure = true;
@@ -212,9 +212,8 @@ private:
   Vector m_sigma = Vector::Zero();
   Matrix m_curvature = Matrix::Zero(); // of half the cost, priors included
   double m_cost = 0;
-  double m_chiSquare = 0;            // of the profile alone
-  double m_inflation = 1;            // of all variances, by what the model leaves out
-  std::vector<Eigen::Index> m_white; // lines that the grey scale cuts off
+  double m_chiSquare = 0; // of the profile alone
+  double m_inflation = 1; // of all variances, by what the model leaves out
   // At m_x: at each line the wave (of two pulses: both, and the second one).
   vpPulseWave m_wave, m_second;
   std::array<double, mostLinear> m_coefficient{}; // the linear parameters of the latest cost()

@@ -266,7 +266,7 @@ double vpWaveformFit::slice(const Vector &axis, double width, double level, Vect
 */
 double vpWaveformFit::unlikely(const Vector &x, double darkest) const
 {
-  return vpStripeLimits::unlikely(x(exposure) / m_profile->exposure, m_profile->logExposureSigma, x(duty)) +
+  return vpStripeLimits::unlikely(x(exposure) / m_profile->exposure, m_logEdgeSigma, x(duty)) +
          m_darkness * darkest * darkest;
 }
 

@@ -5,6 +5,7 @@
 #ifndef vpOutlineFitter_h
 #define vpOutlineFitter_h
 
+#include <algorithm>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -21,6 +22,9 @@ struct VISP_EXPORT vpOutlineFit {
   double background = 0; // grey value just outside the lamp, median over its edge
   double noise = 0;      // grey levels, standard deviation of pixels about the fit, median over the edge
   bool sound = false;    // sharp, and as bright along all of its edge as inside: that of an evenly lit lamp
+
+  //! The blur, px, of a lamp that white clips: at least a lens's, which the clipped edge hides.
+  double clippedBlur() const { return std::max(0.7, blur); }
 };
 
 /*!

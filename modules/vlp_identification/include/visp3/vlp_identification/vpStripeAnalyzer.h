@@ -25,6 +25,10 @@ struct VISP_EXPORT vpStripeProfile {
   double white = std::numeric_limits<double>::infinity(); // grey levels of light where the grey scale ends
   double agreement = 1; // correlation, over the lines, of their left and right halves
 
+  //! Whether lit lines are as bright as the grey scale ends.
+  bool isClipped() const;
+  //! Standard deviation of the logarithm of what the edges of its stripes show of the exposure.
+  double logEdgeSigma() const;
   //! Of the stripes, 0 to 1, but for the darkest and the brightest twentieth of the lines; 0 of no lines.
   double depth() const;
 
