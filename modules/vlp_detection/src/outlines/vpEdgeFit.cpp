@@ -276,8 +276,11 @@ std::optional<double> vpEdgeFit<Model>::clippedEvenness() const
       }
       const vpLineStretch inside(first, last, m_lines->cols);
       const int samples = inside.to - inside.from + 1;
+      if (samples < shortest) {
+        continue;
+      }
       const unsigned char *row = (*m_lines)[line] + inside.from;
-      if (samples < shortest || vpBrighter::brightest(row, samples) >= vpBrighter::nearlyWhite) {
+      if (vpBrighter::brightest(row, samples) >= vpBrighter::nearlyWhite) {
         continue;
       }
       const double mean = static_cast<double>(vpBrighter::sum(row, samples)) / samples;

@@ -178,10 +178,10 @@ void addGrowthVariance(vpOutlineFit &fit, double evenness)
   fit.outline.centreCovariance += sigma * sigma * Eigen::Matrix2d::Identity();
 }
 
-//! Of a lamp that white clips the edge lies farther out by about a lens's blur where it is brighter.
+//! Of a lamp that white clips the edge lies farther out where it is brighter, by a blur at most.
 void addClippingVariance(vpOutlineFit &fit, double evenness)
 {
-  const double sigma = fit.clippedBlur() * (1 / evenness - 1);
+  const double sigma = fit.clippedBlur() * std::min(1.0, 1 / evenness - 1); // no light: 1 / 0
   fit.outline.centreCovariance += sigma * sigma * Eigen::Matrix2d::Identity();
 }
 
