@@ -168,6 +168,37 @@ TEST(Luminaires, ClippingDoesNotHideThatLightIsUneven)
   }
 }
 
+// Hardly a line tells how even the light is; what an edge may be off by is a lens's blur at most.
+TEST(Luminaires, GlareLeavesAMiddleOfSomeSigma)
+{
+  const Pattern glaring = [](double u, double v) { return std::hypot(u, v) > 60 ? 0.0 : 20 * 255.0; };
+  for (int k = 0; k < 5; ++k) {
+    const std::vector<vpLampObservation> seen = seenIn({{{209.6, 160.7}, glaring, 2000, 0.5, 0.2 * k}});
+    ASSERT_EQ(seen.size(), 1u) << k;
+    const double sigma = std::sqrt(seen[0].covariance.trace());
+    EXPECT_GT(sigma, 0.004) << k; // px
+    EXPECT_LT(sigma, 2) << k;
+  }
+}
+
+// A lamp that was seen before is looked at in another way, and is as uneven as it was.
+TEST(Luminaires, UnevenLightIsAsUncertainInTheNextFrame)
+{
+  const Pattern slanted = [](double u, double v) {
+    return std::hypot(u, v) > 60 ? 0.0 : 255 * (1.5 + (0.7 * u + 0.3 * v) / 60);
+  };
+  for (const Pattern &pattern : {Pattern(slanted), hotSpot(60, 20, 0.6)}) {
+    vpLedDetector detector(vpUpwardRig(columns, lines), luminaireMap());
+    const vpImage<unsigned char> I = pictureOf({{{209.6, 160.7}, pattern, 2000, 0.5, 0.3}});
+    detector.detect(I);
+    ASSERT_EQ(detector.observations().size(), 1u);
+    const vpLampObservation before = detector.observations().front();
+    vpLampObservation now = before;
+    ASSERT_TRUE(detector.reacquire(I, now));
+    EXPECT_NEAR(std::sqrt(now.covariance.trace() / before.covariance.trace()), 1, 0.2);
+  }
+}
+
 // Short gaps leave no line dark: what the lamp has on its darkest lines is its own light, too.
 TEST(Luminaires, ALampThatIsNeverDarkIsWhole)
 {

@@ -31,6 +31,19 @@ double median(std::vector<float> &values)
   return *middle;
 }
 
+/*!
+  By how much light that is not even may move the middle, px. Light that grows inwards makes a blurred edge
+  seem farther in, by the square of its blur times the growth: to one side of an uneven emitter more than to
+  the other. All of the growth may lie within the pixels that the edge is fitted to, \e reach on either side.
+  Of a lamp that white clips the edge lies farther out where it is brighter, by a blur at most.
+*/
+double unevenSigma(const vpOutlineFit &fit, const vpLampEvenness &evenness, double reach)
+{
+  auto excess = [](double even) { return std::min(1.0, 1 / even - 1); }; // no light: 1 / 0
+  return std::hypot(fit.blur * fit.blur / reach * excess(evenness.edges),
+                    fit.clippedBlur() * excess(evenness.spared));
+}
+
 } // namespace
 
 template <>
@@ -225,15 +238,16 @@ bool vpEdgeFit<Model>::run(const cv::Rect &box, double shapeSigma, const Steps &
   if (!m_covariance.allFinite() || m_covariance.diagonal().minCoeff() < 0) {
     return false;
   }
+  measureEvenness();
   const double sigma = std::sqrt(m_model.outline(m_covariance).centreCovariance.trace());
   return sigma < 0.3 * radius;
 }
 
 template <class Model>
-double vpEdgeFit<Model>::evenness()
+void vpEdgeFit<Model>::measureEvenness()
 {
   double edges = 0, peaks = 0;
-  m_clipped = false;
+  m_evenness = {};
   for (const EightLines &lines : m_memory->ends) {
     for (int lane = 0; lane < vpLanes::count; ++lane) {
       const int line = lines.line[static_cast<size_t>(lane)];
@@ -246,7 +260,7 @@ double vpEdgeFit<Model>::evenness()
                 right = std::min(m_lines->cols - 1, static_cast<int>(last) + 1);
       const double peak =
           left < right ? vpBrighter::brightest((*m_lines)[line] + left, right - left + 1) : 0.0;
-      m_clipped = m_clipped || peak >= vpBrighter::nearlyWhite;
+      m_evenness.clipped = m_evenness.clipped || peak >= vpBrighter::nearlyWhite;
       for (const vpLineEnds<N> &end : lines.sides) {
         if (end.valid[lane] != 0) {
           edges += std::max(0.f, end.amplitude[lane]);
@@ -255,16 +269,14 @@ double vpEdgeFit<Model>::evenness()
       }
     }
   }
-  return peaks > 0 ? edges / peaks : 0;
+  m_evenness.edges = peaks > 0 ? edges / peaks : 0;
+  m_evenness.spared = m_evenness.clipped ? sparedEvenness() : 1;
 }
 
 template <class Model>
-std::optional<double> vpEdgeFit<Model>::clippedEvenness() const
+double vpEdgeFit<Model>::sparedEvenness() const
 {
   static const int shortest = 5; // samples
-  if (!m_clipped) {
-    return std::nullopt;
-  }
   double least = 0, most = 0;
   for (const EightLines &lines : m_memory->ends) {
     for (int lane = 0; lane < vpLanes::count; ++lane) {
@@ -292,7 +304,7 @@ std::optional<double> vpEdgeFit<Model>::clippedEvenness() const
       }
     }
   }
-  return most > 0 ? std::optional<double>(least / most) : std::nullopt;
+  return most > 0 ? least / most : 0;
 }
 
 template <class Model>
@@ -302,9 +314,10 @@ vpOutlineFit vpEdgeFit<Model>::result() const
   // No lens, sensor or picture format is known better than this.
   static const double systematic = 0.004; // px
   fit.outline = m_model.outline(m_covariance);
-  fit.outline.centreCovariance += systematic * systematic * Eigen::Matrix2d::Identity();
   fit.outline.residual = m_residual;
   fit.blur = m_blur;
+  const double off = std::hypot(systematic, unevenSigma(fit, m_evenness, m_reach));
+  fit.outline.centreCovariance += off * off * Eigen::Matrix2d::Identity();
   fit.background = median(valuesOf(&vpLineEnds<N>::background, &vpLineEnds<N>::shines));
   fit.noise = m_noise;
   return fit;

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -44,6 +43,15 @@ struct vpLineStretch {
   {
   }
   bool enough() const { return to - from >= 3; }
+};
+
+//! How even a lamp is: 1 for a disc of one brightness.
+struct vpLampEvenness {
+  double edges = 0;     // contrast of the edge over that of the brightest inside, mean over the lines
+  bool clipped = false; // white clips some lines: the edge lies too far out for its contrast to tell
+  //! Of a clipped lamp, on lines that white spares: light a little inside the edge over that of all of the
+  //! line, or the reverse, whichever is less; 0 where no such line tells.
+  double spared = 1;
 };
 
 //! What outlines are fitted to.
@@ -109,14 +117,8 @@ public:
   //! \param blur px, to begin with; 0: one that suits the size.
   bool run(const cv::Rect &box, double shapeSigma, const Steps &steps, double blur = 0);
   vpOutlineFit result() const;
-  //! Contrast of the edge over that of the brightest inside, mean over the lines: 1 for an even disc.
-  double evenness();
-  /*!
-    Of a lamp that white clips: the light a little inside its edge over that of all of the line, or the
-    reverse, whichever is less; by lines that white spares, 1 for an even disc. The clipped edge lies too far
-    out for their contrast to tell. Nothing of other lamps. After evenness().
-  */
-  std::optional<double> clippedEvenness() const;
+  //! After run().
+  const vpLampEvenness &evenness() const { return m_evenness; }
   //! Mean squared residual of all lit ends, the outliers among them too, grey levels^2; and how many pixels
   //! that is of.
   double misfit() const { return m_misfit; }
@@ -134,6 +136,8 @@ private:
   void assemble(Equations &equations);
   std::vector<float> &valuesOf(vpLanes::Floats vpLineEnds<N>::*value,
                                vpLanes::Integers vpLineEnds<N>::*which) const;
+  void measureEvenness();
+  double sparedEvenness() const;
 
   const cv::Mat_<unsigned char> *m_lines;
   const std::vector<double> *m_v;
@@ -162,7 +166,7 @@ private:
   double m_prior = 0;
   double m_members = 0; // ends that take part
   double m_kept = 0, m_shining = 0;
-  bool m_clipped = false; // by white, some lines
+  vpLampEvenness m_evenness;
   Memory *m_memory;
 };
 

@@ -154,7 +154,7 @@ std::optional<vpOutlineFit> withoutGhost(const vpEdgeFitPicture &picture, const 
   vpEdgeFit<vpEllipseModel>::Memory memory;
   vpEdgeFit<vpEllipseModel> fit(picture, vpEllipseModel::from(ends, part.box), memory);
   if (!fit.run(part.box, shapeSigma, {maxIterations}) || !holds(fit.result(), part) ||
-      fit.kept() < nearlyAll || fit.evenness() < std::max(nearlyAlone, evenness + more)) {
+      fit.kept() < nearlyAll || fit.evenness().edges < std::max(nearlyAlone, evenness + more)) {
     return std::nullopt;
   }
   vpOutlineFit lamp = fit.result();
@@ -164,25 +164,6 @@ std::optional<vpOutlineFit> withoutGhost(const vpEdgeFitPicture &picture, const 
   static const double pulled = 0.04; // px, by what light there is beside the edge
   lamp.outline.centreCovariance += pulled * pulled * Eigen::Matrix2d::Identity();
   return lamp;
-}
-
-/*!
-  Light that grows inwards makes a blurred edge seem farther in, by the square of its blur times the growth:
-  to one side of an uneven emitter more than to the other. All of the growth may lie within the pixels that
-  the edge is fitted to.
-*/
-void addGrowthVariance(vpOutlineFit &fit, double evenness)
-{
-  const double reach = std::max(4.0, 3 * fit.blur + 2); // px
-  const double sigma = fit.blur * fit.blur * std::max(0.0, 1 / evenness - 1) / reach;
-  fit.outline.centreCovariance += sigma * sigma * Eigen::Matrix2d::Identity();
-}
-
-//! Of a lamp that white clips the edge lies farther out where it is brighter, by a blur at most.
-void addClippingVariance(vpOutlineFit &fit, double evenness)
-{
-  const double sigma = fit.clippedBlur() * std::min(1.0, 1 / evenness - 1); // no light: 1 / 0
-  fit.outline.centreCovariance += sigma * sigma * Eigen::Matrix2d::Identity();
 }
 
 //! Where edges are uneven and leave much of the light about them unexplained, some are not the lamp's.
@@ -283,7 +264,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     isEllipse = ellipse.run(roi.box, shapeSigma, {maxIterations}) && holds(ellipse.result(), roi);
   }
   static const double alone = 0.8; // evenness of a lamp without other light beside it
-  const double evenness = isEllipse ? ellipse.evenness() : 0;
+  const double evenness = isEllipse ? ellipse.evenness().edges : 0;
   if (evenness < alone) {
     if (const auto lamp = withoutGhost(picture, roi, shapeSigma, maxIterations, evenness)) {
       return *lamp;
@@ -294,7 +275,6 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   }
   bool even = evenness > evenEdge;
   double kept = isEllipse ? ellipse.kept() : 0, edges = evenness; // of what is taken at last
-  std::optional<double> clipped = isEllipse ? ellipse.clippedEvenness() : std::nullopt;
   static const double round = 0.015; // share of the radius: no rectangle is that near to an ellipse
   const bool maySquare = !even || ellipseMisfit > round * start.radius();
   const double sidesMisfit =
@@ -302,21 +282,15 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   if (sidesMisfit <= 3 * ellipseMisfit) {
     vpEdgeFit<vpQuadrilateralModel>::Memory ofSides;
     vpEdgeFit<vpQuadrilateralModel> sides(picture, vpQuadrilateralModel::from(ends), ofSides);
-    if (sides.run(roi.box, shapeSigma, {maxIterations}) && sides.evenness() > evenEdge &&
+    if (sides.run(roi.box, shapeSigma, {maxIterations}) && sides.evenness().edges > evenEdge &&
         holds(sides.result(), roi)) {
-      if (even) {
-        best = likelier(ellipse, sides);
-        if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
-          kept = sides.kept();
-          edges = sides.evenness();
-          clipped = sides.clippedEvenness();
-        }
-      } else {
-        kept = sides.kept();
-        edges = sides.evenness();
-        clipped = sides.clippedEvenness();
-        best = sides.result();
+      best = even ? likelier(ellipse, sides) : sides.result();
+      if (!even) {
         best.outline.otherShape = 0; // no ellipse fits at all
+      }
+      if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
+        kept = sides.kept();
+        edges = sides.evenness().edges;
       }
       even = true;
     }
@@ -336,12 +310,6 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
   } else if (evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
     addGhostVariance(best.outline, ellipse.misfit(), brightestOf(lines, roi));
-  }
-  if (sound && best.outline.shape != vpLampOutline::Shape::region) {
-    addGrowthVariance(best, edges);
-    if (clipped) {
-      addClippingVariance(best, *clipped);
-    }
   }
   if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
     vpRimFit::addHiddenSides(best.outline, vpChordShape::longestGap(roi));

@@ -56,7 +56,7 @@ bool vpOutlineTracker::find(const vpLinePicture &picture, const vpLineTiming &ti
       {picture.grey, timing.linePositions(), timing.samplePositions(), timing.samplesAligned()},
       vpEllipseModel(expected.centre, expected.a, expected.b, expected.angle), m_memory->edges);
   if (!ellipse.run(around, shapeSigma, steps, blur) || ellipse.kept() < nearlyAll ||
-      ellipse.shining() < nearlyAll || ellipse.prior() > rare || ellipse.evenness() < evenEdge) {
+      ellipse.shining() < nearlyAll || ellipse.prior() > rare || ellipse.evenness().edges < evenEdge) {
     return false;
   }
   m_fit = ellipse.result();

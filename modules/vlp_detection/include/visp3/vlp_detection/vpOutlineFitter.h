@@ -24,7 +24,11 @@ struct VISP_EXPORT vpOutlineFit {
   bool sound = false;    // sharp, and as bright along all of its edge as inside: that of an evenly lit lamp
 
   //! The blur, px, of a lamp that white clips: at least a lens's, which the clipped edge hides.
-  double clippedBlur() const { return std::max(0.7, blur); }
+  double clippedBlur() const
+  {
+    constexpr double lens = 0.7; // px, of a sharp one
+    return std::max(lens, blur);
+  }
 };
 
 /*!

@@ -27,7 +27,8 @@ struct VISP_EXPORT vpStripeProfile {
 
   //! Whether lit lines are as bright as the grey scale ends.
   bool isClipped() const;
-  //! Standard deviation of the logarithm of what the edges of its stripes show of the exposure.
+  //! Standard deviation of the logarithm of the exposure that the edges of its stripes show: of a clipped
+  //! lamp these are steeper.
   double logEdgeSigma() const;
   //! Of the stripes, 0 to 1, but for the darkest and the brightest twentieth of the lines; 0 of no lines.
   double depth() const;
@@ -38,8 +39,10 @@ struct VISP_EXPORT vpStripeProfile {
     Samples count that lie wholly inside, of a quadrilateral in lines from the first to the last lit one of
     \e roi: its sides along the lines are hardly seen. Of a lamp with a soft edge only the middle strip
     counts, where its glow is even; where there is no outline, most of the hull of the region's chords.
-    Where the grey scale's bright end clips samples, a line's dimmest ones tell its light. A quantile commutes
-    with clipping, a mean does not. The surroundings are no brighter than the lamp's darkest lines.
+    Where the grey scale's bright end clips samples, a line's dimmest ones tell its light: a quantile commutes
+    with clipping, a mean does not. Where it clips all of a line, means are taken: cut off at white, stripes
+    are those of a lamp as bright as white under a shorter exposure. The surroundings are no brighter than the
+    lamp's darkest lines.
   */
   static vpStripeProfile along(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
                                const vpOutlineFit &fit, const vpLedRoi &roi);
