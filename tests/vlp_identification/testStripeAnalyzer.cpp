@@ -352,6 +352,27 @@ TEST(StripeAnalyzer, LightThatChangesSlowerThanAnyLampDoesNotBlink)
   EXPECT_NEAR(notSlower.analyze(lamp).frequency, 1500, 5);
 }
 
+//! An emitter that is brighter in its middle: its bow is no slow light, and does not hide shallow stripes.
+TEST(StripeAnalyzer, ABowHidesNoStripes)
+{
+  vpStripeAnalyzer analyzer;
+  analyzer.minFrequency = 500;
+  for (const double frequency : {1500., 2500., 6000., 9500.}) {
+    for (int k = 0; k < 10; ++k) {
+      vpStripeProfile profile; // 145 lines of 40 us
+      profile.exposure = 40e-6;
+      for (int i = 0; i < 145; ++i) {
+        const double y = (i - 72) / 73., t = 40e-6 * i;
+        profile.time.push_back(t);
+        profile.light.push_back(200 * (1 - 0.4 * y * y) *
+                                (1 + 0.06 * std::cos(2 * M_PI * (frequency * t + 0.1 * k))));
+        profile.sigma.push_back(0.3);
+      }
+      EXPECT_TRUE(analyzer.blinks(profile)) << frequency << " Hz, phase " << 0.1 * k;
+    }
+  }
+}
+
 TEST(StripeAnalyzer, EmptyAndShortProfilesSayNothing)
 {
   vpStripeProfile profile;

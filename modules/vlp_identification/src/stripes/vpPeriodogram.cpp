@@ -49,7 +49,7 @@ Grid gridOf(const std::vector<double> &times)
   return grid;
 }
 
-//! Transforms of three real sequences on one grid, two of them in one.
+//! Transforms of four real sequences on one grid, two at a time in one.
 class Transforms
 {
 public:
@@ -57,21 +57,25 @@ public:
       : m_grid(grid), m_length(length), m_values(2, length, std::complex<double>(0, 0))
   {
   }
-  void add(size_t line, double weight, double weightTime, double weightLight)
+  void add(size_t line, double weight, double weightTime, double weightSquare, double weightLight)
   {
     const auto at = static_cast<int>(m_grid.place[line]);
     m_values(0, at) += std::complex<double>(weight, weightTime);
-    m_values(1, at) += weightLight;
+    m_values(1, at) += std::complex<double>(weightLight, weightSquare);
   }
   void transform() { cv::dft(m_values, m_values, cv::DFT_ROWS); }
-  std::complex<double> weight(int k) const { return 0.5 * (at(0, k) + std::conj(at(0, -k))); }
-  std::complex<double> weightTime(int k) const
-  {
-    return std::complex<double>(0, -0.5) * (at(0, k) - std::conj(at(0, -k)));
-  }
-  std::complex<double> weightLight(int k) const { return at(1, k); }
+  std::complex<double> weight(int k) const { return real(0, k); }
+  std::complex<double> weightTime(int k) const { return imaginary(0, k); }
+  std::complex<double> weightSquare(int k) const { return imaginary(1, k); }
+  std::complex<double> weightLight(int k) const { return real(1, k); }
 
 private:
+  //! Of the sequence that is the real part, the imaginary part.
+  std::complex<double> real(int row, int k) const { return 0.5 * (at(row, k) + std::conj(at(row, -k))); }
+  std::complex<double> imaginary(int row, int k) const
+  {
+    return std::complex<double>(0, -0.5) * (at(row, k) - std::conj(at(row, -k)));
+  }
   std::complex<double> at(int row, int k) const
   {
     return m_values(row, (k % m_length + m_length) % m_length);
@@ -83,9 +87,10 @@ private:
 };
 
 /*!
-  Least squares of light over envelope by a level, a slope and a sinusoid, weighted. All sums over the lines
-  that it needs are Fourier transforms of the weights, of weights times time and of weights times light, those
-  of squared cosines at twice the frequency (Scargle 1982).
+  Least squares of light over envelope by a level, a slope, a bend and a sinusoid, weighted: what the envelope
+  leaves of an emitter's own shape is no stripe. All sums over the lines that it needs are Fourier transforms
+  of the weights, of weights times time, its square and light, those of squared cosines at twice the frequency
+  (Scargle 1982).
 */
 class LeastSquares
 {
@@ -96,7 +101,7 @@ public:
   };
   //! Of all lines at one frequency: Fourier transforms from the first line on.
   struct Sums {
-    std::complex<double> weight, weightTime, weightLight, weightTwice;
+    std::complex<double> weight, weightTime, weightSquare, weightLight, weightTwice;
   };
 
   LeastSquares(const vpStripeProfile &profile, const std::vector<double> &envelope, double modelError);
@@ -109,9 +114,11 @@ public:
 private:
   std::vector<Line> m_lines;
   double m_first = 0, m_middle = 0, m_span = 0;
-  double m_weight = 0;                       // sum
-  double m_mean = 0, m_slope = 0;            // of the time, weighted, and the root of its sum of squares
-  double m_lightLevel = 0, m_lightSlope = 0; // what level and slope explain of the light
+  double m_weight = 0; // sum
+  // Level, slope and bend, made orthogonal: means of time and of its square, weighted; roots of the sums of
+  // squares of what the simpler ones leave; how much of the slope the square has.
+  double m_mean = 0, m_slope = 0, m_square = 0, m_bend = 0, m_tilted = 0;
+  double m_lightLevel = 0, m_lightSlope = 0, m_lightBend = 0; // what they explain of the light
 };
 
 LeastSquares::LeastSquares(const vpStripeProfile &profile, const std::vector<double> &envelope,
@@ -122,7 +129,7 @@ LeastSquares::LeastSquares(const vpStripeProfile &profile, const std::vector<dou
   m_first = *first;
   m_middle = 0.5 * (*first + *last);
   m_span = (*last - *first) * n / std::max(n - 1, 1.0);
-  double Wy = 0, Wyy = 0, Wq = 0, Wyq = 0;
+  double Wy = 0, Wyy = 0, Wyyy = 0, Wyyyy = 0, Wq = 0, Wyq = 0, Wyyq = 0;
   for (size_t i = 0; i < profile.light.size(); ++i) {
     const double y = 2 * (profile.time[i] - m_middle) / m_span, q = profile.light[i] / envelope[i];
     // Were dark lines as certain as their noise is low, no sinusoid would fit stripes of a short pulse.
@@ -132,29 +139,37 @@ LeastSquares::LeastSquares(const vpStripeProfile &profile, const std::vector<dou
     m_weight += w;
     Wy += w * y;
     Wyy += w * y * y;
+    Wyyy += w * y * y * y;
+    Wyyyy += w * y * y * y * y;
     Wq += w * q;
     Wyq += w * y * q;
+    Wyyq += w * y * y * q;
   }
   m_mean = Wy / m_weight;
   m_slope = std::sqrt(std::max(Wyy - m_mean * Wy, 1e-300));
   m_lightLevel = Wq / std::sqrt(m_weight);
   m_lightSlope = (Wyq - m_mean * Wq) / m_slope;
+  m_square = Wyy / m_weight;
+  m_tilted = (Wyyy - m_mean * Wyy) / m_slope;
+  m_bend = std::sqrt(std::max(Wyyyy - m_square * Wyy - m_tilted * m_tilted, 1e-300));
+  m_lightBend = (Wyyq - m_square * Wq - m_tilted * m_lightSlope) / m_bend;
 }
 
 vpStripeStarts::Sinusoid LeastSquares::at(double frequency, const Sums &sums) const
 {
-  // Real part: cosine; imaginary part: minus sine. Level and slope are taken off, the slope first made
-  // orthogonal to the level.
+  // Real part: cosine; imaginary part: minus sine. Level, slope and bend are taken off.
   const std::complex<double> level = sums.weight / std::sqrt(m_weight),
                              tilted = (sums.weightTime - m_mean * sums.weight) / m_slope,
-                             light = sums.weightLight - m_lightLevel * level - m_lightSlope * tilted;
+                             bent = (sums.weightSquare - m_square * sums.weight - m_tilted * tilted) / m_bend,
+                             light = sums.weightLight - m_lightLevel * level - m_lightSlope * tilted -
+                                     m_lightBend * bent;
   static const double ridge = 1e-9;
   const double cc = ridge + 0.5 * (m_weight + sums.weightTwice.real()) - level.real() * level.real() -
-                    tilted.real() * tilted.real(),
+                    tilted.real() * tilted.real() - bent.real() * bent.real(),
                ss = ridge + 0.5 * (m_weight - sums.weightTwice.real()) - level.imag() * level.imag() -
-                    tilted.imag() * tilted.imag(),
+                    tilted.imag() * tilted.imag() - bent.imag() * bent.imag(),
                cs = 0.5 * sums.weightTwice.imag() - level.real() * level.imag() -
-                    tilted.real() * tilted.imag();
+                    tilted.real() * tilted.imag() - bent.real() * bent.imag();
   const double determinant = cc * ss - cs * cs;
   if (!(determinant > 1e-9 * cc * ss)) {
     return {frequency, 0, 0};
@@ -193,6 +208,7 @@ vpStripeStarts::Sinusoid vpStripeStarts::sinusoidAt(const vpStripeProfile &profi
         std::polar(1.0, -2 * M_PI * frequency * (profile.time[i] - fit.first()));
     sums.weight += line.weight * turn;
     sums.weightTime += line.weight * line.time * turn;
+    sums.weightSquare += line.weight * line.time * line.time * turn;
     sums.weightLight += line.weight * line.light * turn;
     sums.weightTwice += line.weight * turn * turn;
   }
@@ -210,7 +226,8 @@ std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripe
   Transforms transforms(grid, length);
   for (size_t i = 0; i < fit.lines().size(); ++i) {
     const LeastSquares::Line &line = fit.lines()[i];
-    transforms.add(i, line.weight, line.weight * line.time, line.weight * line.light);
+    transforms.add(i, line.weight, line.weight * line.time, line.weight * line.time * line.time,
+                   line.weight * line.light);
   }
   transforms.transform();
   const double perStep = 1 / (length * grid.step), fastest = 0.5 * static_cast<double>(fit.lines().size());
@@ -218,8 +235,9 @@ std::vector<vpStripeStarts::Sinusoid> vpStripeStarts::periodogram(const vpStripe
             highest = static_cast<int>(std::lround(fastest / fit.span() / perStep));
   std::vector<Sinusoid> all;
   for (int k = lowest; k <= highest; ++k) {
-    all.push_back(fit.at(k * perStep, {transforms.weight(k), transforms.weightTime(k),
-                                       transforms.weightLight(k), transforms.weight(2 * k)}));
+    all.push_back(
+        fit.at(k * perStep, {transforms.weight(k), transforms.weightTime(k), transforms.weightSquare(k),
+                             transforms.weightLight(k), transforms.weight(2 * k)}));
   }
   return maximaOf(all);
 }

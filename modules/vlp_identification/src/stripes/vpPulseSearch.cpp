@@ -15,7 +15,7 @@ namespace
 //! The best of several starts.
 void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
 {
-  if ((!best || fit.cost() < best->cost()) && !fit.hollow()) {
+  if (!best || fit.cost() < best->cost()) {
     best.emplace(std::move(fit));
   }
 }

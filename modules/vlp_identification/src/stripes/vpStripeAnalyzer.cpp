@@ -294,7 +294,9 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
       start->settings.sharpened = false;
     }
   }
+  bool hollow = false; // as fitted
   if (pwm) {
+    hollow = pwm->hollow();
     pwm->integrate();
     take(features, *pwm, false, middle);
     if (pwm->hidesDuty()) {
@@ -316,6 +318,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     }
     if (two && two->misfit() < maxMisfit && (!pwm || two->criterion() < pwm->criterion()) &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
+      hollow = two->hollow();
       two->integrate();
       take(features, *two, true, middle);
       start = startOfTwo;
@@ -323,10 +326,11 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   widen(features, profile, start->edgesAgree(features.signal == vpStripeFeatures::Signal::twoPulse));
   static const double certain = 0.04; // misfit from which a word may explain the stripes better
-  if (!(features.misfit < certain)) {
-    const std::optional<vpWordSearch::Found> word =
-        findWord(profile, vpStripeStarts::envelope(profile, peaks, order), order, *this, features.misfit,
-                 peaks.size());
+  if (hollow || !(features.misfit < certain)) {
+    // A patchy emitter may be dark in between, but so are the chips of a word.
+    const double unexplained = hollow ? 1 : features.misfit;
+    const std::optional<vpWordSearch::Found> word = findWord(
+        profile, vpStripeStarts::envelope(profile, peaks, order), order, *this, unexplained, peaks.size());
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }
