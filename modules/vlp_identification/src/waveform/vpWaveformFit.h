@@ -94,8 +94,8 @@ public:
   //! lines. After integrate().
   double frequencyNoise() const;
   /*!
-    Whether the lamp as it was fitted is nearly dark on lines between much brighter ones: no emitter is so,
-    but one of half the frequency, of which every other pulse is missing.
+    Whether the lamp as it was fitted is nearly dark on lines between much brighter ones: few emitters are so,
+    and what was fitted may lack pulses, as a word does.
   */
   bool hollow() const;
   //! Chi-square of profile and priors together.
