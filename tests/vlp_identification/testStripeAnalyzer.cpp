@@ -373,6 +373,39 @@ TEST(StripeAnalyzer, ABowHidesNoStripes)
   }
 }
 
+//! Stripes of nearly five lines, which drift along the lines by a part of one: five lines that repeat, under
+//! an envelope that bends, look alike.
+TEST(StripeAnalyzer, StripesThatNearlyRepeatWithTheLines)
+{
+  const double line = 40e-6, exposure = 25e-6;
+  const int lines = 66;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 0.3);
+  for (const double drift : {-0.6, -0.5, -0.4, 0.4, 0.5, 0.6}) { // lines, over all of them
+    for (const double duty : {0.25, 0.35, 0.45}) {
+      for (int k = 0; k < 20; ++k) {
+        const double frequency = (1 + drift / lines) / (5 * line);
+        vpStripeProfile profile;
+        profile.exposure = 0.42 * exposure; // as the rig states it
+        profile.logExposureSigma = 0.69;
+        for (int i = 0; i < lines; ++i) {
+          double lit = 0; // share of the exposure
+          for (int period = -1; period <= lines / 5 + 1; ++period) {
+            const double on = (period + 0.05 * k) / frequency, begin = line * i, end = begin + exposure;
+            lit += std::max(0.0, std::min(end, on + duty / frequency) - std::max(begin, on)) / exposure;
+          }
+          profile.time.push_back(line * i + 0.5 * exposure);
+          profile.light.push_back(150 * lit + noise(random));
+          profile.sigma.push_back(0.3);
+        }
+        const vpStripeFeatures features = vpStripeAnalyzer().analyze(profile);
+        EXPECT_NEAR(features.frequency, frequency, 5 * features.frequencySigma)
+            << "drift " << drift << ", duty " << duty << ", phase " << 0.05 * k;
+      }
+    }
+  }
+}
+
 TEST(StripeAnalyzer, EmptyAndShortProfilesSayNothing)
 {
   vpStripeProfile profile;

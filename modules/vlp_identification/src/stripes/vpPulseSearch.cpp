@@ -107,22 +107,58 @@ bool vpPulseSearch::isLikeliest(const vpWaveformFit &fit)
   return std::abs(fit.value(vpWaveformFit::frequency) - candidates().front().frequency) * span < 1;
 }
 
+//! One pulse a period, from there. Nothing where it leads to none.
+std::optional<vpWaveformFit> vpPulseSearch::fitFrom(const vpStripeStarts::Pulses &start,
+                                                    double exposure) const
+{
+  vpWaveformFit fit(*m_profile, settings, m_envelope);
+  return fit.run(start.frequency, start.phase, start.duty, 0, exposure, true) && fit.preferStatedExposure()
+             ? std::make_optional(std::move(fit))
+             : std::nullopt;
+}
+
+/*!
+  From where the edges are. Stripes that repeat with the lines, and such as drift along them by a part of a
+  line, leave the lines' light alike, but for an envelope that bends: from one no descent leads to the other.
+*/
+std::optional<vpWaveformFit> vpPulseSearch::fromPulses(double exposure) const
+{
+  using P = vpWaveformFit;
+  static const double drift = 0.5, longer = 0.3; // lines: over the profile; a pulse
+  std::optional<vpWaveformFit> best = fitFrom(*m_pulses, exposure);
+  if (best && best->repeats()) {
+    const vpWaveformFit still = *best;
+    const auto lines = static_cast<double>(m_profile->light.size());
+    const double f = still.value(P::frequency),
+                 perLine = f * std::abs(m_profile->time.back() - m_profile->time.front()) / lines; // periods
+    for (const double away : {-drift, drift}) {
+      for (const double more : {-longer, 0.0, longer}) {
+        // The pulse's middle stays.
+        const double longerBy = more * perLine, phase = still.value(P::phase) + 0.5 * longerBy;
+        std::optional<vpWaveformFit> other = fitFrom(
+            {f * (1 + away / lines), phase, still.value(P::duty) + longerBy, 0}, still.value(P::exposure));
+        if (other) {
+          keepBetter(best, std::move(*other));
+        }
+      }
+    }
+  }
+  return best;
+}
+
 std::optional<vpWaveformFit> vpPulseSearch::onePulse(double explained)
 {
   std::optional<vpWaveformFit> best;
   if (m_pulses) {
-    const vpStripeStarts::Pulses &pulses = *m_pulses;
-    for (double exposure : exposuresOf(*m_profile, pulses.frequency)) {
-      vpWaveformFit fit(*m_profile, settings, m_envelope);
-      if (fit.run(pulses.frequency, pulses.phase, pulses.duty, 0, exposure, true) &&
-          fit.preferStatedExposure()) {
-        if (fit.misfit() > allExplained) {
-          fit.leaveGap();
+    for (double exposure : exposuresOf(*m_profile, m_pulses->frequency)) {
+      if (std::optional<vpWaveformFit> fit = fromPulses(exposure)) {
+        if (fit->misfit() > allExplained) {
+          fit->leaveGap();
         }
-        if (fit.misfit() < allExplained && asStated(fit, *m_profile)) {
+        if (fit->misfit() < allExplained && asStated(*fit, *m_profile)) {
           return fit;
         }
-        keepBetter(best, std::move(fit));
+        keepBetter(best, std::move(*fit));
       }
     }
   }

@@ -53,6 +53,8 @@ public:
 
 private:
   bool isLikeliest(const vpWaveformFit &fit);
+  std::optional<vpWaveformFit> fitFrom(const vpStripeStarts::Pulses &start, double exposure) const;
+  std::optional<vpWaveformFit> fromPulses(double exposure) const;
   void takePulses(const std::vector<vpStripeStarts::Edge> &edges);
 
   const vpStripeProfile *m_profile;

@@ -98,6 +98,9 @@ public:
     and what was fitted may lack pulses, as a word does.
   */
   bool hollow() const;
+  //! Whether few lines make a pattern that repeats over the whole profile: its edges pass from line to line
+  //! all at once.
+  bool repeats() const;
   //! Chi-square of profile and priors together.
   double cost() const { return m_cost; }
   //! The same with what offset and envelope have to explain to be worth their unknowns (Schwarz 1978).
@@ -134,9 +137,6 @@ private:
   void judgeResiduals();
   vpDutySlice slice(double atDuty);
 
-  //! Whether few lines make a pattern that repeats over the whole profile: its edges pass from line to line
-  //! all at once.
-  bool repeats() const;
   //! Whether gaps between exposures matter.
   bool leavesGaps() const
   {
