@@ -247,7 +247,7 @@ template <class Model>
 void vpEdgeFit<Model>::measureEvenness()
 {
   double edges = 0, peaks = 0;
-  m_evenness = {};
+  bool clipped = false;
   for (const EightLines &lines : m_memory->ends) {
     for (int lane = 0; lane < vpLanes::count; ++lane) {
       const int line = lines.line[static_cast<size_t>(lane)];
@@ -260,7 +260,7 @@ void vpEdgeFit<Model>::measureEvenness()
                 right = std::min(m_lines->cols - 1, static_cast<int>(last) + 1);
       const double peak =
           left < right ? vpBrighter::brightest((*m_lines)[line] + left, right - left + 1) : 0.0;
-      m_evenness.clipped = m_evenness.clipped || peak >= vpBrighter::nearlyWhite;
+      clipped = clipped || peak >= vpBrighter::nearlyWhite;
       for (const vpLineEnds<N> &end : lines.sides) {
         if (end.valid[lane] != 0) {
           edges += std::max(0.f, end.amplitude[lane]);
@@ -270,7 +270,7 @@ void vpEdgeFit<Model>::measureEvenness()
     }
   }
   m_evenness.edges = peaks > 0 ? edges / peaks : 0;
-  m_evenness.spared = m_evenness.clipped ? sparedEvenness() : 1;
+  m_evenness.spared = clipped ? sparedEvenness() : 1;
 }
 
 template <class Model>

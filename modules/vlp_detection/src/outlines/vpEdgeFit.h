@@ -47,10 +47,10 @@ struct vpLineStretch {
 
 //! How even a lamp is: 1 for a disc of one brightness.
 struct vpLampEvenness {
-  double edges = 0;     // contrast of the edge over that of the brightest inside, mean over the lines
-  bool clipped = false; // white clips some lines: the edge lies too far out for its contrast to tell
-  //! Of a clipped lamp, on lines that white spares: light a little inside the edge over that of all of the
-  //! line, or the reverse, whichever is less; 0 where no such line tells.
+  double edges = 0; // contrast of the edge over that of the brightest inside, mean over the lines
+  //! Where white clips some lines, the edge lies too far out for its contrast to tell. Then, on lines that
+  //! white spares: light a little inside the edge over that of all of the line, or the reverse, whichever is
+  //! less. 0 where no such line tells.
   double spared = 1;
 };
 

@@ -32,7 +32,8 @@ public:
   */
   vpPulseSearch evenly(bool explained, const vpStripeAnalyzer &analyzer) const;
 
-  //! Whether there are stripes at all: a sinusoid explains that much more than a level and a slope.
+  //! Whether there are stripes at all: a sinusoid explains that much more than level, slope and
+  //! bend.
   bool significant(double least);
   /*!
     The likeliest sinusoids, the best first. None where the best is slower than any lamp: what shades a lamp,

@@ -40,7 +40,7 @@ struct VISP_EXPORT vpStripeProfile {
     \e roi: its sides along the lines are hardly seen. Of a lamp with a soft edge only the middle strip
     counts, where its glow is even; where there is no outline, most of the hull of the region's chords.
     Where the grey scale's bright end clips samples, a line's dimmest ones tell its light: a quantile commutes
-    with clipping, a mean does not. Where it clips all of a line, means are taken: cut off at white, stripes
+    with clipping, a mean does not. Where it clips all of a line, means are taken. Cut off at white, stripes
     are those of a lamp as bright as white under a shorter exposure. The surroundings are no brighter than the
     lamp's darkest lines.
   */
