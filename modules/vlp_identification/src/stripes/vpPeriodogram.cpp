@@ -86,11 +86,56 @@ private:
   cv::Mat_<std::complex<double>> m_values;
 };
 
+//! Normal equations of a cosine and a sine.
+class Equations
+{
+public:
+  //! \param light Real part: of the cosine; imaginary part: of minus the sine.
+  Equations(double weight, const std::complex<double> &weightTwice, const std::complex<double> &light)
+      : m_cosines(ridge + 0.5 * (weight + weightTwice.real())),
+        m_sines(ridge + 0.5 * (weight - weightTwice.real())), m_both(0.5 * weightTwice.imag()), m_light(light)
+  {
+  }
+
+  //! What a shape of norm 1 explains of cosine and sine, and of the light.
+  void takeOff(const std::complex<double> &shape, double light)
+  {
+    m_cosines -= shape.real() * shape.real();
+    m_sines -= shape.imag() * shape.imag();
+    m_both -= shape.real() * shape.imag();
+    m_light -= light * shape;
+  }
+
+  //! Amplitudes of cosine (real part) and sine. 0 where what was taken off leaves nothing of either.
+  std::complex<double> solution() const
+  {
+    static const double least = 1e-9;
+    const double determinant = m_cosines * m_sines - m_both * m_both;
+    if (!(determinant > least * m_cosines * m_sines)) {
+      return 0;
+    }
+    return std::complex<double>(m_sines * m_light.real() - m_both * m_light.imag(),
+                                m_cosines * m_light.imag() - m_both * m_light.real()) /
+           determinant;
+  }
+
+  //! In chi-square.
+  double gain(const std::complex<double> &solution) const
+  {
+    return solution.real() * m_light.real() + solution.imag() * m_light.imag();
+  }
+
+private:
+  static constexpr double ridge = 1e-9;
+  double m_cosines, m_sines, m_both;
+  std::complex<double> m_light;
+};
+
 /*!
-  Least squares of light over envelope by a level, a slope, a bend and a sinusoid, weighted: what the envelope
-  leaves of an emitter's own shape is no stripe. All sums over the lines that it needs are Fourier transforms
-  of the weights, of weights times time, its square and light, those of squared cosines at twice the frequency
-  (Scargle 1982).
+  Least squares of light over envelope by a level, a slope and a sinusoid, weighted, and with a bend as well:
+  what the envelope leaves of an emitter's own shape is no stripe. All sums over the lines that it needs are
+  Fourier transforms of the weights, of weights times time, its square and light, those of squared cosines at
+  twice the frequency (Scargle 1982).
 */
 class LeastSquares
 {
@@ -157,27 +202,20 @@ LeastSquares::LeastSquares(const vpStripeProfile &profile, const std::vector<dou
 
 vpStripeStarts::Sinusoid LeastSquares::at(double frequency, const Sums &sums) const
 {
-  // Real part: cosine; imaginary part: minus sine. Level, slope and bend are taken off.
   const std::complex<double> level = sums.weight / std::sqrt(m_weight),
                              tilted = (sums.weightTime - m_mean * sums.weight) / m_slope,
-                             bent = (sums.weightSquare - m_square * sums.weight - m_tilted * tilted) / m_bend,
-                             light = sums.weightLight - m_lightLevel * level - m_lightSlope * tilted -
-                                     m_lightBend * bent;
-  static const double ridge = 1e-9;
-  const double cc = ridge + 0.5 * (m_weight + sums.weightTwice.real()) - level.real() * level.real() -
-                    tilted.real() * tilted.real() - bent.real() * bent.real(),
-               ss = ridge + 0.5 * (m_weight - sums.weightTwice.real()) - level.imag() * level.imag() -
-                    tilted.imag() * tilted.imag() - bent.imag() * bent.imag(),
-               cs = 0.5 * sums.weightTwice.imag() - level.real() * level.imag() -
-                    tilted.real() * tilted.imag() - bent.real() * bent.imag();
-  const double determinant = cc * ss - cs * cs;
-  if (!(determinant > 1e-9 * cc * ss)) {
-    return {frequency, 0, 0};
-  }
-  const double cosine = (ss * light.real() - cs * light.imag()) / determinant,
-               sine = (cc * light.imag() - cs * light.real()) / determinant;
-  const double phase = std::atan2(-sine, cosine) / (2 * M_PI) - frequency * (m_middle - m_first);
-  return {frequency, phase - std::round(phase), cosine * light.real() + sine * light.imag()};
+                             bent = (sums.weightSquare - m_square * sums.weight - m_tilted * tilted) / m_bend;
+  Equations equations(m_weight, sums.weightTwice, sums.weightLight);
+  equations.takeOff(level, m_lightLevel);
+  equations.takeOff(tilted, m_lightSlope);
+  const std::complex<double> sinusoid = equations.solution();
+  const double gain = equations.gain(sinusoid),
+               phase = std::atan2(-sinusoid.imag(), sinusoid.real()) / (2 * M_PI) -
+                       frequency * (m_middle - m_first);
+  equations.takeOff(bent, m_lightBend);
+  // Less than a period is a bend, too.
+  const double beyondBend = frequency * m_span < 1 ? 0 : equations.gain(equations.solution());
+  return {frequency, phase - std::round(phase), gain, beyondBend};
 }
 
 std::vector<vpStripeStarts::Sinusoid> maximaOf(const std::vector<vpStripeStarts::Sinusoid> &all)

@@ -81,10 +81,9 @@ vpPulseSearch vpPulseSearch::evenly(bool explained, const vpStripeAnalyzer &anal
 bool vpPulseSearch::significant(double least)
 {
   const bool soon =
-      m_pulses &&
-      vpStripeStarts::sinusoidAt(*m_profile, m_envelope, settings.modelError, m_pulses->frequency).gain >=
-          least;
-  return soon || (!candidates().empty() && candidates().front().gain >= least);
+      m_pulses && vpStripeStarts::sinusoidAt(*m_profile, m_envelope, settings.modelError, m_pulses->frequency)
+                          .beyondBend >= least;
+  return soon || (!candidates().empty() && m_clearest >= least);
 }
 
 const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
@@ -92,7 +91,11 @@ const std::vector<vpStripeStarts::Sinusoid> &vpPulseSearch::candidates()
   static const size_t most = 3;
   if (!m_candidates) {
     m_candidates = vpStripeStarts::periodogram(*m_profile, m_envelope, settings.modelError);
-    if (!m_candidates->empty() && m_candidates->front().frequency < m_slowest && !m_gap) {
+    const auto clearest =
+        std::max_element(m_candidates->begin(), m_candidates->end(),
+                         [](const auto &a, const auto &b) { return a.beyondBend < b.beyondBend; });
+    m_clearest = clearest == m_candidates->end() ? 0 : clearest->beyondBend;
+    if (m_clearest > 0 && clearest->frequency < m_slowest && !m_gap) {
       m_candidates->clear();
     }
     m_candidates->resize(std::min(m_candidates->size(), most));

@@ -32,12 +32,12 @@ public:
   */
   vpPulseSearch evenly(bool explained, const vpStripeAnalyzer &analyzer) const;
 
-  //! Whether there are stripes at all: a sinusoid explains that much more than level, slope and
-  //! bend.
+  //! Whether there are stripes at all: a sinusoid explains that much more than level, slope and bend.
   bool significant(double least);
   /*!
-    The likeliest sinusoids, the best first. None where the best is slower than any lamp: what shades a lamp,
-    or a room, changes slowly. Two stripes with one gap are exempt: cut short, they look slow.
+    The likeliest sinusoids, the best first. None where the one that stands out the most is slower than any
+    lamp: what shades a lamp, or a room, changes slowly. Two stripes with one gap are exempt: cut short, they
+    look slow.
   */
   const std::vector<vpStripeStarts::Sinusoid> &candidates();
   //! Whether no more shows than where one stripe begins, ends, or both.
@@ -67,6 +67,7 @@ private:
   bool m_gap = false;      // all that shows is parts of two stripes and the gap between them
   bool m_byPulses = false; // what the edges say is all there is to try
   std::optional<std::vector<vpStripeStarts::Sinusoid>> m_candidates;
+  double m_clearest = 0; // what the one of all sinusoids explains that does so the most, beyond a bend
 };
 
 END_VISP_NAMESPACE

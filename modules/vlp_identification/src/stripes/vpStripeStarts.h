@@ -44,14 +44,15 @@ std::vector<double> envelopeOfPeriod(const vpStripeProfile &profile, double freq
 std::vector<double> envelopeOfStripes(const vpStripeProfile &profile, const std::vector<size_t> &peaks);
 
 struct Sinusoid {
-  double frequency; // Hz
-  double phase;     // periods, of its maximum, at the middle of the profile
-  double gain;      // in chi-square over a lamp without stripes
+  double frequency;  // Hz
+  double phase;      // periods, of its maximum, at the middle of the profile
+  double gain;       // in chi-square over a level and a slope
+  double beyondBend; // the same, over an emitter without stripes: a level, a slope and a bend
 };
 
 /*!
   Least-squares periodogram of the profile with its envelope divided out: at each frequency a sinusoid beside
-  a level and a slope. Local maxima, the best first.
+  a level and a slope. Local maxima of the gain, the best first.
 */
 std::vector<Sinusoid> periodogram(const vpStripeProfile &profile, const std::vector<double> &envelope,
                                   double modelError);
