@@ -348,6 +348,19 @@ TEST(LedRoiDetector, NothingInUniformPictures)
   EXPECT_LE(vpLedRoiDetector().detect(cv::Mat_<unsigned char>(200, 300, 255)).size(), 1u);
 }
 
+// As narrow as a block, or as two, the picture does not tell how light goes on across it.
+TEST(LedRoiDetector, NothingInLightThatGrows)
+{
+  for (const cv::Size size : {cv::Size(8, 1000), cv::Size(16, 900), cv::Size(1000, 16), cv::Size(640, 480)}) {
+    cv::Mat_<unsigned char> lines(size);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x)
+        lines(y, x) = static_cast<unsigned char>(20 + (x + y) / 10);
+    const std::vector<vpLedRoi> rois = vpLedRoiDetector().detect(lines);
+    EXPECT_TRUE(rois.empty()) << size << ": " << boxes(rois);
+  }
+}
+
 // At most a few specks.
 TEST(LedRoiDetector, NothingInNoise)
 {
@@ -411,6 +424,31 @@ TEST(LedRoiDetector, LampsThatSinglePixelsHardlyShow)
     EXPECT_GE(found, 6) << "noise " << noise; // of seven
     EXPECT_LE(strangers, 1) << "noise " << noise;
   }
+}
+
+// Its darkest place is darker by more than the lamp is brighter than what it hangs before.
+TEST(LedRoiDetector, DimLampsBeforeACeilingThatIsBrighterOnOneSide)
+{
+  for (const double bow : {-15, 0, 15}) // grey levels, of the ceiling's middle
+    for (const double phase : phases) {
+      vpLampPicture picture =
+          pictureOf({disc(120, 100, 30, 10, 12, 0.5, phase), disc(420, 200, 40, 10, 15, 0.5, phase),
+                     disc(250, 330, 90, 150, 40, 1, 0)}, // the last one steady
+                    640, 480);
+      picture.background = 40;
+      picture.noise = 1;
+      vpImage<unsigned char> I = picture.render();
+      for (unsigned int y = 0; y < I.getHeight(); ++y)
+        for (unsigned int x = 0; x < I.getWidth(); ++x) {
+          const double across = x / 320. - 1, along = y / 240. - 1;
+          I[y][x] =
+              cv::saturate_cast<unsigned char>(I[y][x] + 15 * across + 8 * along - bow * across * across);
+        }
+      const std::vector<vpLedRoi> rois = vpLedRoiDetector().detect(vpLinePicture(I, false).grey);
+      for (const vpPaintedLamp &lamp : picture.lamps)
+        EXPECT_TRUE(holds(rois, picture, lamp)) << "bow " << bow << ", phase " << phase;
+      EXPECT_EQ(rois.size(), picture.lamps.size()) << boxes(rois);
+    }
 }
 
 // A cut that separates one of them is best while the others are still together.

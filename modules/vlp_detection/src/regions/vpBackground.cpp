@@ -18,11 +18,6 @@ BEGIN_VISP_NAMESPACE
 namespace
 {
 
-struct Block {
-  double mean;
-  double noise;
-};
-
 /*!
   Standard deviation of Gaussian noise before black clipped it, over that after, where a share of the pixels
   is black. From the moments of the clipped Gaussian, which a straight line follows to 5 % up to the share of
@@ -89,12 +84,11 @@ Sums sumsOfWhole(const unsigned char *first, size_t step)
   return sums;
 }
 
-Block blockOf(const Sums &sums, int width, int height)
+double noiseOf(const Sums &sums, int width, int height)
 {
-  const double area = width * height;
   const double squares = sums.squares - static_cast<double>(sums.ofLines) / width; // about each line's mean
   const double variance = std::max(0.0, squares) / std::max(1, height * (width - 1));
-  return {sums.grey / area, std::sqrt(variance) * unclipped(sums.black / area)};
+  return std::sqrt(variance) * unclipped(sums.black / static_cast<double>(width * height));
 }
 
 double quantile(std::vector<double> values, double share)
@@ -106,38 +100,44 @@ double quantile(std::vector<double> values, double share)
 
 } // namespace
 
-vpBackground vpBackground::of(const cv::Mat_<unsigned char> &lines)
+std::vector<vpPictureBlock> vpPictureBlock::of(const cv::Mat_<unsigned char> &lines)
 {
-  static const int most = 800;          // blocks
-  static const double leastNoise = 0.3; // grey levels: that of rounding
+  static const int most = 800; // blocks
   const int width = std::min(side, lines.cols);
   const int height = std::min(side, lines.rows);
   const int step = std::max(side, static_cast<int>(std::sqrt(static_cast<double>(lines.total()) / most)));
-  std::vector<Block> blocks;
+  std::vector<vpPictureBlock> blocks;
   const bool whole = width == side && height == side;
   for (int y = 0; y + height <= lines.rows; y += step) {
     for (int x = 0; x + width <= lines.cols; x += step) {
       const Sums sums =
           whole ? sumsOfWhole(lines[y] + x, lines.step) : sumsOf(lines, cv::Rect(x, y, width, height));
-      blocks.push_back(blockOf(sums, width, height));
+      blocks.push_back({(2. * x + width) / lines.cols - 1, (2. * y + height) / lines.rows - 1,
+                        sums.grey / static_cast<double>(width * height), noiseOf(sums, width, height)});
     }
   }
+  return blocks;
+}
+
+vpBackground vpBackground::of(const std::vector<vpPictureBlock> &blocks)
+{
+  static const double leastNoise = 0.3; // grey levels: that of rounding
   std::vector<double> means;
-  for (const Block &block : blocks) {
+  for (const vpPictureBlock &block : blocks) {
     means.push_back(block.mean);
-  }
-  const double median = quantile(means, 0.5);
-  std::vector<double> deviations;
-  for (const Block &block : blocks) {
-    if (block.mean <= median) {
-      deviations.push_back(block.noise);
-    }
   }
   vpBackground dark;
   dark.level = quantile(means, 0.03);
+  dark.half = quantile(means, 0.5);
+  std::vector<double> deviations;
+  for (const vpPictureBlock &block : blocks) {
+    if (block.mean <= dark.half) {
+      deviations.push_back(block.noise);
+    }
+  }
   dark.noise = std::max(leastNoise, quantile(deviations, 0.5));
   std::vector<double> gains;
-  for (const Block &block : blocks) {
+  for (const vpPictureBlock &block : blocks) {
     const double light = block.mean - dark.level;
     if (light > 6 * dark.noise && block.mean < 200) {
       gains.push_back((block.noise * block.noise - dark.noise * dark.noise) / light);

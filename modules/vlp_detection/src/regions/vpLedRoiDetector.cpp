@@ -14,6 +14,7 @@
 
 #include "vpBackground.h"
 #include "vpBinnedSearch.h"
+#include "vpCeiling.h"
 #include "vpChordShape.h"
 #include "vpDips.h"
 #include "vpLampGroup.h"
@@ -287,7 +288,26 @@ vpLinePicture::vpLinePicture(const vpImage<unsigned char> &I, bool alongColumns)
 
 std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines) const
 {
-  return lines.empty() ? std::vector<vpLedRoi>() : detect(lines, vpBackground::of(lines), {});
+  if (lines.empty()) {
+    return {};
+  }
+  const std::vector<vpPictureBlock> blocks = vpPictureBlock::of(lines);
+  const vpBackground dark = vpBackground::of(blocks);
+  if (dark.half - dark.level < 0.5 * lowest(dark)) {
+    return detect(lines, dark, {}); // an even ceiling
+  }
+  const vpCeiling ceiling(blocks);
+  const cv::Mat_<unsigned char> even = ceiling.takenOff(lines);
+  std::vector<vpLedRoi> rois = detect(even, vpBackground::of(vpPictureBlock::of(even)), {});
+  for (vpLedRoi &roi : rois) {
+    roi.level += ceiling.above(0.5 * cv::Point2d(roi.box.tl() + roi.box.br()), lines.size());
+  }
+  return rois;
+}
+
+double vpLedRoiDetector::lowest(const vpBackground &dark) const
+{
+  return std::max(noiseFactor * dark.noise, minContrast);
 }
 
 //! All but what lies inside \e known boxes.
@@ -310,14 +330,13 @@ std::vector<vpLedRoi> vpLedRoiDetector::lampsOf(const cv::Mat_<unsigned char> &l
                                                 const vpBackground &dark,
                                                 const std::vector<cv::Rect> &known) const
 {
-  const double lowest = std::max(noiseFactor * dark.noise, minContrast);
-
   static const double peakFactor = 2.5, white = 255;
   std::vector<Group> tree;
   vpLevelStripes below;
   long workLeft = 60000; // chords and stripes looked at for splitting
-  for (double contrast = lowest; dark.level + contrast < white; contrast *= levelRatio) {
-    const bool first = contrast <= lowest;
+  const double lowestContrast = lowest(dark);
+  for (double contrast = lowestContrast; dark.level + contrast < white; contrast *= levelRatio) {
+    const bool first = contrast <= lowestContrast;
     if (!first && below.stripes.empty()) {
       break; // nothing is brighter
     }

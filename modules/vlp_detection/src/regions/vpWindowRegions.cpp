@@ -62,7 +62,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
     }
     // As much beside it tells what is dark: what is asked for may fill it.
     const cv::Rect beside = vpGrown(looked, std::max(looked.width, looked.height) / 2) & picture;
-    rois = detect(lines(looked), vpBackground::of(lines(beside)), knownThere);
+    rois = detect(lines(looked), vpBackground::of(vpPictureBlock::of(lines(beside))), knownThere);
     for (vpLedRoi &roi : rois) {
       moveTo(roi, looked.tl(), picture.size());
     }
