@@ -219,7 +219,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     if (!fit || isCut(regions[chosen], picture)) {
       return std::nullopt; // what is seen of a lamp that the border cuts says nothing of its middle
     }
-    Extent extent{regions[chosen], *fit, regions.front()};
+    Extent extent{regions[chosen], *fit};
     if (extent.fit.outline.shape == vpLampOutline::Shape::quadrilateral) {
       vpRimFit::addHiddenSides(extent.fit.outline,
                                vpChordShape::longestGap(extent.roi) + vpDemodulation::thick);

@@ -5,9 +5,11 @@
 #include "vpCeiling.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Cholesky>
 #include <opencv2/imgproc.hpp>
+#include <visp3/core/vpMath.h>
 #include <visp3/core/vpRobust.h>
 
 BEGIN_VISP_NAMESPACE
@@ -17,15 +19,16 @@ vpCeiling::Terms vpCeiling::termsAt(double x, double y)
   return (Terms() << 1, x, y, x * x, x * y, y * y).finished();
 }
 
-vpCeiling::vpCeiling(const std::vector<vpPictureBlock> &blocks)
+std::optional<vpCeiling> vpCeiling::of(const std::vector<vpPictureBlock> &blocks, double noise)
 {
   static const size_t fewest = 60; // blocks, that tell a surface
   static const unsigned int rounds = 10;
   static const double rounding = 0.3; // grey levels
   static const double ridge = 1e-6;   // in blocks: a picture of one or two columns of them tells no bend
   if (blocks.size() < fewest) {
-    return;
+    return std::nullopt;
   }
+  vpCeiling ceiling;
   std::vector<Terms> terms;
   const auto n = static_cast<unsigned int>(blocks.size());
   vpColVector off(n), weights(n, 1);
@@ -44,15 +47,18 @@ vpCeiling::vpCeiling(const std::vector<vpPictureBlock> &blocks)
       A += weights[i] * terms[i] * terms[i].transpose();
       b += weights[i] * blocks[i].mean * terms[i];
     }
-    m_surface = A.ldlt().solve(b);
+    ceiling.m_surface = A.ldlt().solve(b);
     for (unsigned int i = 0; i < n; ++i) {
-      off[i] = blocks[i].mean - terms[i].dot(m_surface);
+      off[i] = blocks[i].mean - terms[i].dot(ceiling.m_surface);
     }
   }
+  std::vector<double> sizes;
   for (unsigned int i = 0; i < n; ++i) {
-    const double light = terms[i].dot(m_surface);
-    m_darkest = i == 0 ? light : std::min(m_darkest, light);
+    const double light = terms[i].dot(ceiling.m_surface);
+    ceiling.m_darkest = i == 0 ? light : std::min(ceiling.m_darkest, light);
+    sizes.push_back(std::abs(off[i]));
   }
+  return vpMath::getMedian(sizes) < noise ? std::make_optional(ceiling) : std::nullopt;
 }
 
 double vpCeiling::above(const cv::Point2d &point, const cv::Size &picture) const

@@ -5,6 +5,7 @@
 #ifndef vpCeiling_h
 #define vpCeiling_h
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,7 +23,9 @@ BEGIN_VISP_NAMESPACE
 class vpCeiling
 {
 public:
-  explicit vpCeiling(const std::vector<vpPictureBlock> &blocks);
+  //! \param noise Of a pixel, grey levels. Nothing where half of the blocks are farther off than that: what
+  //! has edges, or is mottled, is no such surface.
+  static std::optional<vpCeiling> of(const std::vector<vpPictureBlock> &blocks, double noise);
 
   //! The picture as it were before a ceiling as dark all over as in its darkest place.
   cv::Mat_<unsigned char> takenOff(const cv::Mat_<unsigned char> &lines) const;

@@ -293,14 +293,15 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
   }
   const std::vector<vpPictureBlock> blocks = vpPictureBlock::of(lines);
   const vpBackground dark = vpBackground::of(blocks);
-  if (dark.half - dark.level < 0.5 * lowest(dark)) {
-    return detect(lines, dark, {}); // an even ceiling
+  const bool uneven = dark.half - dark.level > 0.5 * lowest(dark);
+  const std::optional<vpCeiling> ceiling = uneven ? vpCeiling::of(blocks, dark.noise) : std::nullopt;
+  if (!ceiling) {
+    return detect(lines, dark, {});
   }
-  const vpCeiling ceiling(blocks);
-  const cv::Mat_<unsigned char> even = ceiling.takenOff(lines);
+  const cv::Mat_<unsigned char> even = ceiling->takenOff(lines);
   std::vector<vpLedRoi> rois = detect(even, vpBackground::of(vpPictureBlock::of(even)), {});
   for (vpLedRoi &roi : rois) {
-    roi.level += ceiling.above(0.5 * cv::Point2d(roi.box.tl() + roi.box.br()), lines.size());
+    roi.level += ceiling->above(0.5 * cv::Point2d(roi.box.tl() + roi.box.br()), lines.size());
   }
   return rois;
 }

@@ -137,14 +137,7 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
     return tells(a.lamp) != tells(b.lamp) ? tells(a.lamp) : a.lamp.features.area > b.lamp.features.area;
   });
   for (size_t i = 0; i < regions.size(); ++i) {
-    const bool told = tells(regions[i].lamp);
     completeOne(picture, regions, i);
-    if (blinksSomehow(regions[i].lamp) && !isWhole(regions[i].fit) && readAround(picture, regions[i])) {
-      completeOne(picture, regions, i);
-    }
-    if (!told && tells(regions[i].lamp)) {
-      completeOne(picture, regions, i); // by what the rest of it says
-    }
   }
   for (size_t i = regions.size(); i-- > 0;) {
     const vpLampObservation lamp = regions[i].lamp;
@@ -231,24 +224,6 @@ void vpLedDetector::completeOne(const vpLinePicture &picture, std::vector<Region
   }
 }
 
-//! The bright part of a lamp may show too few stripes, and the dim rest about it more.
-bool vpLedDetector::readAround(const vpLinePicture &picture, Region &region) const
-{
-  vpLedRoi around = region.roi;
-  const int by = sizeOf(around.box);
-  around.box =
-      cv::Rect(around.box.x - by, around.box.y - by, around.box.width + 2 * by, around.box.height + 2 * by) &
-      cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
-  const vpStripeFeatures features = agreedStripes(picture, vpOutlineFitter::boxOf(around), around);
-  if (std::isnan(features.phase) || features.stripes <= region.lamp.features.stripes) {
-    return false;
-  }
-  const double area = region.lamp.features.area;
-  region.lamp.features = features;
-  region.lamp.features.area = area;
-  return true;
-}
-
 //! All the light that blinks as the region does.
 void vpLedDetector::complete(const vpLinePicture &picture, const std::vector<float> &lit,
                              const std::vector<cv::Rect> &others, Region &region) const
@@ -271,13 +246,6 @@ void vpLedDetector::complete(const vpLinePicture &picture, const std::vector<flo
   const bool better = whole.lamp.features.misfit < region.lamp.features.misfit;
   if (!tells(whole.lamp) || !(better || mayBlinkAlike(whole.lamp, region.lamp))) {
     if (!tells(region.lamp)) {
-      const vpStripeFeatures all =
-          agreedStripes(picture, vpOutlineFitter::boxOf(extent->widest), extent->widest);
-      if (vpLedIdEvidence::tells(all)) {
-        const double area = region.lamp.features.area;
-        region.lamp.features = all;
-        region.lamp.features.area = area;
-      }
       return;
     }
     whole.lamp.features = region.lamp.features;

@@ -270,22 +270,14 @@ vpStripeFeatures vpLedDetector::analyzed(vpStripeProfile profile, bool unknownWo
   return by.analyze(profile);
 }
 
-//! Whether a region has stripes at all, by its middle, or at first sight by what its columns agree on.
+//! Whether a region has stripes at all, by its middle.
 bool vpLedDetector::mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const
 {
   static const int soft = 2; // lines at either end, by blur and by exposure
   vpLedRoi inner = roi;
   inner.box = cv::Rect(roi.box.x, roi.box.y + soft, roi.box.width, std::max(0, roi.box.height - 2 * soft));
-  const vpOutlineFit box = vpOutlineFitter::boxOf(inner);
-  return analyzer().blinks(vpStripeProfile::along(picture.grey, m_timing, box, inner)) ||
-         isPatchwork(vpStripeProfile::agreedByColumns(picture.grey, m_timing, box, inner, 0));
-}
-
-//! Whether what columns agree on are a lamp's stripes.
-bool vpLedDetector::isPatchwork(const vpStripeProfile &agreed) const
-{
-  return vpStripeStarts::peaks(agreed).size() >= vpPatchwork::fewestStripes &&
-         agreed.depth() >= vpPatchwork::least && analyzer().blinks(agreed);
+  return analyzer().blinks(
+      vpStripeProfile::along(picture.grey, m_timing, vpOutlineFitter::boxOf(inner), inner));
 }
 
 vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
@@ -308,25 +300,18 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
   return vpLedIdEvidence::tells(other) && better ? other : features;
 }
 
-/*!
-  What the lines' means hide the columns may agree on: what is a lamp's, and as dark between the stripes as
-  its wave says.
-*/
+//! What the lines' means hide the columns may agree on.
 vpStripeFeatures vpLedDetector::agreedStripes(const vpLinePicture &picture, const vpOutlineFit &fit,
                                               const vpLedRoi &roi) const
 {
-  static const double unlike = 0.2; // depth
   const vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);
-  if (!isPatchwork(agreed)) {
+  if (vpStripeStarts::peaks(agreed).size() < vpPatchwork::fewestStripes ||
+      agreed.depth() < vpPatchwork::least || !analyzer().blinks(agreed)) {
     return {};
   }
   const vpStripeFeatures features = analyzed(agreed, false);
-  if (!vpPatchwork::isLamp(features) || features.signal == vpStripeFeatures::Signal::coded) {
-    return features.signal == vpStripeFeatures::Signal::coded ? features : vpStripeFeatures();
-  }
-  vpStripeProfile wave;
-  wave.light = vpLitShareOf(features, agreed.time);
-  return std::abs(features.modulation - wave.depth()) > unlike ? vpStripeFeatures() : features;
+  const bool coded = features.signal == vpStripeFeatures::Signal::coded;
+  return coded || vpPatchwork::isLamp(features) ? features : vpStripeFeatures();
 }
 
 /*!

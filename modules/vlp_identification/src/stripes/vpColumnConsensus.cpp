@@ -286,10 +286,11 @@ Strips stripsOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box, const
 
 vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &lines,
                                                  const vpLineTiming &timing, const vpOutlineFit &fit,
-                                                 const vpLedRoi &roi, int rounds)
+                                                 const vpLedRoi &roi)
 {
   static const int mostStrips = 32, narrowest = 2; // samples
   static const double lit = 100, least = 0.5;      // grey levels, of a lit line; of its standard deviation
+  static const int rounds = 6;                     // of turns
   static const double unknown = 0.3;               // standard deviation of a line that tells nothing
   vpStripeProfile profile;
   profile.exposure = std::hypot(timing.exposure(), timing.averaging());

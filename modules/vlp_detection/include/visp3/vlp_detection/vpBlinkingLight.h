@@ -29,7 +29,6 @@ public:
   struct Extent {
     vpLedRoi roi;
     vpOutlineFit fit;
-    vpLedRoi widest; // all the light that is beyond noise
   };
 
   /*!

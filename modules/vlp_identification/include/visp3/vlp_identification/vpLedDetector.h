@@ -100,7 +100,6 @@ private:
   void read(const vpLinePicture &picture, Region &region) const;
   vpStripeAnalyzer analyzer() const;
   bool mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const;
-  bool isPatchwork(const vpStripeProfile &agreed) const;
   vpStripeFeatures analyzed(vpStripeProfile profile, bool unknownWords) const;
   vpStripeFeatures stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
                              const vpLedRoi &roi) const;
@@ -111,7 +110,6 @@ private:
   double blinkingShare(const vpLinePicture &picture, const Region &region) const;
   void joinPieces(const vpLinePicture &picture, std::vector<Region> &regions);
   void takeApart(const vpLinePicture &picture, std::vector<Region> &regions);
-  bool readAround(const vpLinePicture &picture, Region &region) const;
   void complete(const vpLinePicture &picture, std::vector<Region> &regions);
   void completeOne(const vpLinePicture &picture, std::vector<Region> &regions, size_t &i) const;
   void complete(const vpLinePicture &picture, const std::vector<float> &lit,

@@ -53,12 +53,11 @@ struct VISP_EXPORT vpStripeProfile {
     both by turns: S of each strip as a random walk along the lines, m of each line from the S that all
     other lines predict there. Patches, glare and clipped columns are outliers of a few strips. Where all
     strips change alike while the lamp is lit, S and m cannot be separated, and all is taken for m. Less
-    certain than along() where the emitter is even. \param rounds Of turns; without any, each line's median
-    share of the brightest light near it. \return As if a lit line had 100 grey levels; lines that tell
-    nothing are left out.
+    certain than along() where the emitter is even. \return As if a lit line had 100 grey levels; lines that
+    tell nothing are left out.
   */
   static vpStripeProfile agreedByColumns(const cv::Mat_<unsigned char> &lines, const vpLineTiming &timing,
-                                         const vpOutlineFit &fit, const vpLedRoi &roi, int rounds = 6);
+                                         const vpOutlineFit &fit, const vpLedRoi &roi);
 };
 
 //! How the words of a map's lamps are sent: what is known of a word before its chips are.
