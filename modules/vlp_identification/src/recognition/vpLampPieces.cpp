@@ -138,6 +138,9 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
   });
   for (size_t i = 0; i < regions.size(); ++i) {
     completeOne(picture, regions, i);
+    if (blinksSomehow(regions[i].lamp) && !isWhole(regions[i].fit) && readAround(picture, regions[i])) {
+      completeOne(picture, regions, i);
+    }
   }
   for (size_t i = regions.size(); i-- > 0;) {
     const vpLampObservation lamp = regions[i].lamp;
@@ -222,6 +225,24 @@ void vpLedDetector::completeOne(const vpLinePicture &picture, std::vector<Region
       i -= k < i ? 1 : 0;
     }
   }
+}
+
+//! The bright part of a lamp may show too few stripes, and the dim rest about it more.
+bool vpLedDetector::readAround(const vpLinePicture &picture, Region &region) const
+{
+  vpLedRoi around = region.roi;
+  const int by = sizeOf(around.box);
+  around.box =
+      cv::Rect(around.box.x - by, around.box.y - by, around.box.width + 2 * by, around.box.height + 2 * by) &
+      cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
+  const vpStripeFeatures features = agreedStripes(picture, vpOutlineFitter::boxOf(around), around);
+  if (std::isnan(features.phase) || features.stripes <= region.lamp.features.stripes) {
+    return false;
+  }
+  const double area = region.lamp.features.area;
+  region.lamp.features = features;
+  region.lamp.features.area = area;
+  return true;
 }
 
 //! All the light that blinks as the region does.

@@ -110,6 +110,7 @@ private:
   double blinkingShare(const vpLinePicture &picture, const Region &region) const;
   void joinPieces(const vpLinePicture &picture, std::vector<Region> &regions);
   void takeApart(const vpLinePicture &picture, std::vector<Region> &regions);
+  bool readAround(const vpLinePicture &picture, Region &region) const;
   void complete(const vpLinePicture &picture, std::vector<Region> &regions);
   void completeOne(const vpLinePicture &picture, std::vector<Region> &regions, size_t &i) const;
   void complete(const vpLinePicture &picture, const std::vector<float> &lit,
