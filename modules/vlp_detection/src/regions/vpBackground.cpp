@@ -128,10 +128,10 @@ vpBackground vpBackground::of(const std::vector<vpPictureBlock> &blocks)
   }
   vpBackground dark;
   dark.level = quantile(means, 0.03);
-  dark.half = quantile(means, 0.5);
+  dark.median = quantile(means, 0.5);
   std::vector<double> deviations;
   for (const vpPictureBlock &block : blocks) {
-    if (block.mean <= dark.half) {
+    if (block.mean <= dark.median) {
       deviations.push_back(block.noise);
     }
   }

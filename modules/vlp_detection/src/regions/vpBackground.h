@@ -26,9 +26,9 @@ struct vpPictureBlock {
 
 //! The dark part of a picture, grey levels.
 struct vpBackground {
-  double level = 0; // of its darkest places
-  double half = 0;  // below which half of the picture is
-  double noise = 0; // standard deviation, before clipping at black
+  double level = 0;  // of its darkest places
+  double median = 0; // of the whole picture
+  double noise = 0;  // standard deviation, before clipping at black
 
   double gain = 0; // growth of the noise's variance with the light: that of photons
 

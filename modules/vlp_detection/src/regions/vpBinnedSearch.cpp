@@ -33,7 +33,7 @@ cv::Mat_<unsigned char> vpBinnedSearch::binned(const cv::Mat_<unsigned char> &li
 
 vpBackground vpBinnedSearch::binned(const vpBackground &dark, int width)
 {
-  return {dark.level, dark.half, dark.noise / std::sqrt(width), dark.gain / width};
+  return {dark.level, dark.median, dark.noise / std::sqrt(width), dark.gain / width};
 }
 
 std::vector<vpLedRoi> vpBinnedSearch::merged(std::vector<vpLedRoi> narrower,

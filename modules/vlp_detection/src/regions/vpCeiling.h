@@ -27,7 +27,7 @@ public:
   //! has edges, or is mottled, is no such surface.
   static std::optional<vpCeiling> of(const std::vector<vpPictureBlock> &blocks, double noise);
 
-  //! The picture as it were before a ceiling as dark all over as in its darkest place.
+  //! The picture as it would be if the ceiling were as dark all over as in its darkest place.
   cv::Mat_<unsigned char> takenOff(const cv::Mat_<unsigned char> &lines) const;
   //! Grey levels that this takes off at a point, px, of a picture of that size.
   double above(const cv::Point2d &point, const cv::Size &picture) const;

@@ -294,7 +294,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &li
   }
   const std::vector<vpPictureBlock> blocks = vpPictureBlock::of(lines);
   const vpBackground dark = vpBackground::of(blocks);
-  const bool uneven = dark.half - dark.level > 0.5 * lowest(dark);
+  const bool uneven = dark.median - dark.level > 0.5 * lowest(dark);
   const std::optional<vpCeiling> ceiling = uneven ? vpCeiling::of(blocks, dark.noise) : std::nullopt;
   if (!ceiling) {
     return detect(lines, dark, {});
