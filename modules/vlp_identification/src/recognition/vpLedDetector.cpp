@@ -270,21 +270,17 @@ vpStripeFeatures vpLedDetector::analyzed(vpStripeProfile profile, bool unknownWo
   return by.analyze(profile);
 }
 
-//! Whether a region has stripes at all, by its middle.
-bool vpLedDetector::mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const
+//! Whether light shines on end for longer than any lamp does.
+bool vpLedDetector::isSteady(const vpStripeProfile &profile) const
 {
-  static const int soft = 2; // lines at either end, by blur and by exposure
-  vpLedRoi inner = roi;
-  inner.box = cv::Rect(roi.box.x, roi.box.y + soft, roi.box.width, std::max(0, roi.box.height - 2 * soft));
-  return analyzer().blinks(
-      vpStripeProfile::along(picture.grey, m_timing, vpOutlineFitter::boxOf(inner), inner));
+  return !profile.light.empty() && vpLongestLit(profile) > longestPeriod;
 }
 
 vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
                                           const vpLedRoi &roi) const
 {
   const vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
-  if (!profile.light.empty() && vpLongestLit(profile) > longestPeriod) {
+  if (isSteady(profile)) {
     return {};
   }
   vpStripeFeatures features = analyzed(profile, fit.sound); // parts of a lamp show no whole word
@@ -341,12 +337,20 @@ void vpLedDetector::shareExposure(const vpLinePicture &picture, std::vector<Regi
   }
 }
 
-//! A region as the picture shows it; of what does not blink the outline is no matter.
-vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi)
+//! A region as the picture shows it; of what does not blink, by its middle, the outline is no matter.
+vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, vpLedRoi roi)
 {
+  static const int soft = 2; // lines at either end, by blur and by exposure
   const bool dark = roi.chords.size() < static_cast<size_t>(roi.box.height); // some of its lines
-  const bool blinks = dark && vpOutlineFitter::looksWhole(roi);
-  return observe(picture, roi, !roi.even && (blinks || mayBlink(picture, roi)));
+  if (roi.even || (dark && vpOutlineFitter::looksWhole(roi))) {
+    return observe(picture, roi, !roi.even);
+  }
+  vpLedRoi inner = roi;
+  inner.box = cv::Rect(roi.box.x, roi.box.y + soft, roi.box.width, std::max(0, roi.box.height - 2 * soft));
+  const vpStripeProfile profile =
+      vpStripeProfile::along(picture.grey, m_timing, vpOutlineFitter::boxOf(inner), inner);
+  roi.steady = roi.steady || isSteady(profile);
+  return observe(picture, roi, !roi.steady && analyzer().blinks(profile));
 }
 
 vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const vpLedRoi &roi, bool blinks)

@@ -47,7 +47,7 @@ struct VISP_EXPORT vpLedRoi {
   double level = 0;       // grey value that its pixels exceed
   double lampness = 0;    // 0 to 1: how much the chords look like one whole lamp
   bool even = false;      // no strip of its samples dips from line to line: one stripe, or steady light
-  bool steady = false;    // even for longer than any lamp shines
+  bool steady = false;    // shines on end for longer than any lamp
   bool cutAcross = false; // touches the first or last sample
   bool cutAlong = false;  // touches the first or last line, or may go on beyond it after a dark stripe
 

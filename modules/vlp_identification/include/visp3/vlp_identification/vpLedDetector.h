@@ -95,11 +95,11 @@ public:
 private:
   struct Region;
   bool observe(const vpLinePicture &picture, const std::vector<vpLedRoi> &rois);
-  Region observe(const vpLinePicture &picture, const vpLedRoi &roi);
+  Region observe(const vpLinePicture &picture, vpLedRoi roi);
   Region observe(const vpLinePicture &picture, const vpLedRoi &roi, bool blinks);
   void read(const vpLinePicture &picture, Region &region) const;
   vpStripeAnalyzer analyzer() const;
-  bool mayBlink(const vpLinePicture &picture, const vpLedRoi &roi) const;
+  bool isSteady(const vpStripeProfile &profile) const;
   vpStripeFeatures analyzed(vpStripeProfile profile, bool unknownWords) const;
   vpStripeFeatures stripesOf(const vpLinePicture &picture, const vpOutlineFit &fit,
                              const vpLedRoi &roi) const;
