@@ -115,7 +115,7 @@ std::optional<vpWaveformFit> vpPulseSearch::fitFrom(const vpStripeStarts::Pulses
                                                     double exposure) const
 {
   vpWaveformFit fit(*m_profile, settings, m_envelope);
-  return fit.run(start.frequency, start.phase, start.duty, 0, exposure, true) && fit.preferStatedExposure()
+  return fit.run(start.frequency, start.phase, start.duty, 0, exposure) && fit.preferStatedExposure()
              ? std::make_optional(std::move(fit))
              : std::nullopt;
 }
@@ -200,7 +200,7 @@ std::optional<vpWaveformFit> vpPulseSearch::twoPulses()
   std::optional<vpWaveformFit> best;
   if (const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::pairsOfPulses(m_edges)) {
     vpWaveformFit fit(*m_profile, both, m_envelope);
-    if (fit.run(pulses->frequency, pulses->phase, pulses->duty, pulses->phaseDifference, 0, true) &&
+    if (fit.run(pulses->frequency, pulses->phase, pulses->duty, pulses->phaseDifference) &&
         fit.preferStatedExposure()) {
       if (fit.misfit() < allExplained) {
         return fit;

@@ -86,17 +86,6 @@ vpStripeProfile insideOf(const vpStripeProfile &profile)
   return inside;
 }
 
-//! Whether a camera that sharpens would show: on stripes wide enough, and on more lines than such a wave
-//! could follow by chance.
-bool showsSharpening(const vpStripeProfile &profile, double frequency)
-{
-  static const size_t many = 40;   // lines
-  static const double narrow = 10; // lines of a period
-  const double span = std::abs(profile.time.back() - profile.time.front());
-  const auto lines = static_cast<double>(profile.time.size());
-  return profile.time.size() >= many && lines > narrow * span * frequency;
-}
-
 //! \param middle s, of the profile, after the start of the frame.
 void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse, double middle)
 {
@@ -282,17 +271,6 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     byStripes.emplace(profile, vpStripeStarts::envelopeOfStripes(profile, peaks), 0, *this);
     byStripes->settings.envelopeUnknowns = 2 * static_cast<int>(peaks.size());
     alsoFrom(*byStripes);
-  }
-  if (pwm && pwm->misfit() > vpPulseSearch::allExplained &&
-      showsSharpening(profile, pwm->value(vpWaveformFit::frequency))) {
-    start->settings.sharpened = true;
-    std::optional<vpWaveformFit> other = start->onePulse(pwm->misfit());
-    static const double clearly = 0.5;
-    if (other && other->misfit() < clearly * pwm->misfit()) {
-      pwm = std::move(other);
-    } else {
-      start->settings.sharpened = false;
-    }
   }
   bool hollow = false; // as fitted
   if (pwm) {

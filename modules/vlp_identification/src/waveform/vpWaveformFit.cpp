@@ -18,8 +18,7 @@ BEGIN_VISP_NAMESPACE
 vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
                              const std::vector<double> &envelope)
     : m_profile(&profile), m_settings(settings),
-      m_bends(1 + std::clamp(settings.envelopeOrder, 0, mostLinear - 3)),
-      m_linear(1 + m_bends + (settings.sharpened ? 1 : 0))
+      m_bends(1 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2)), m_linear(1 + m_bends)
 {
   const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
   const auto n = static_cast<Eigen::Index>(profile.light.size());
@@ -140,9 +139,7 @@ void vpWaveformFit::keepPossible(Vector &x) const
   x(frequency) =
       std::max(std::clamp(x(frequency), m_startFrequency - reach, m_startFrequency + reach), 0.1 / m_half);
   x(duty) = std::clamp(x(duty), vpStripeLimits::leastDuty, 1 - vpStripeLimits::leastDuty);
-  if (m_freeExposure) {
-    x(exposure) = std::clamp(x(exposure), m_leastExposure, m_mostExposure);
-  }
+  x(exposure) = std::clamp(x(exposure), m_leastExposure, m_mostExposure);
   if (m_settings.twoPulse) {
     x(phaseDifference) = std::clamp(x(phaseDifference), 0.5 * x(duty), 0.5);
   }
@@ -150,7 +147,7 @@ void vpWaveformFit::keepPossible(Vector &x) const
 
 double vpWaveformFit::cost(const Vector &x)
 {
-  // Normal equations of offset and envelope; the envelope's bends are unlikely to be sharp.
+  // Normal equations of offset and envelope.
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, mostLinear, mostLinear>;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, mostLinear, 1>;
   evaluateValue(x);
@@ -172,25 +169,8 @@ double vpWaveformFit::cost(const Vector &x)
       A(p - k + 1, k + 1) = ofSquare[static_cast<size_t>(p)];
     }
   }
-  if (m_settings.sharpened) {
-    const Eigen::Index last = m_linear - 1;
-    evaluateOvershoot(m_value);
-    m_column = m_weight * m_overshoot;
-    A(last, 0) = m_column.sum();
-    A(last, last) = (m_column * m_overshoot).sum();
-    b(last) = (m_column * m_light).sum();
-    m_column *= m_value;
-    for (Eigen::Index k = 0; k < bends; ++k) {
-      A(last, k + 1) = m_powers.col(k).matrix().dot(m_column.matrix());
-    }
-  }
   A.diagonal().array() += 1e-9 * (A(0, 0) + 1e-12);
   A(0, 0) += m_darkness;
-  // Bends of four times the envelope are one standard deviation.
-  static const double unbent = 0.06;
-  for (int k = 2; k <= m_bends; ++k) {
-    A(k, k) += unbent;
-  }
   A.triangularView<Eigen::StrictlyUpper>() = A.transpose();
   Column c = A.ldlt().solve(b);
   const double least = leastOffset(c(1));
@@ -214,21 +194,6 @@ double vpWaveformFit::cost(const Vector &x)
   return sum;
 }
 
-/*!
-  What sharpening adds to lit lines beside darker ones, grey levels for each unit of its strength. Dark lines
-  it would make darker, but there is no darker.
-*/
-void vpWaveformFit::evaluateOvershoot(const Eigen::ArrayXd &value)
-{
-  const Eigen::Index n = value.size();
-  m_overshoot = 2 * value;
-  m_overshoot.head(n - 1) -= value.tail(n - 1);
-  m_overshoot.tail(n - 1) -= value.head(n - 1);
-  m_overshoot(0) -= value(0);
-  m_overshoot(n - 1) -= value(n - 1);
-  m_overshoot = m_given * value * m_overshoot.max(0);
-}
-
 void vpWaveformFit::settle()
 {
   m_cost = cost(m_x);
@@ -245,11 +210,6 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
   const Eigen::ArrayXd light = envelope();
   evaluateWave(m_x, m_time, m_wave, m_second);
   m_residual = m_light - m_coefficient[0] - light * m_wave.value;
-  if (m_settings.sharpened) {
-    evaluateOvershoot(m_wave.value);
-    m_residual -= m_coefficient[static_cast<size_t>(m_linear) - 1] * m_overshoot;
-    m_jacobian.col(all - 1) = m_overshoot;
-  }
   m_jacobian.col(phase) = light * m_wave.byTurn;
   m_jacobian.col(exposure) = light * m_wave.byWidth;
   m_jacobian.col(frequency) =
@@ -283,23 +243,10 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
   g = r.head<parameters>(); // the linear ones are at their best: their gradient is 0
 }
 
-bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k, double startExposure,
-                        bool near)
+bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k, double startExposure)
 {
-  const double exposed = startExposure > 0 ? startExposure : m_profile->exposure;
-  static const double slow = 0.3; // periods
   m_startFrequency = f;
-  m_x << f, startPhase, startDuty, exposed, k;
-  // A sharp edge is felt only by the line that it falls into, and would be led on line by line; a slow one
-  // from afar.
-  if (!near && exposed * f < 0.5 * slow) {
-    m_x(exposure) = slow / f;
-    m_freeExposure = false;
-    keepPossible(m_x);
-    descend(15);
-    m_freeExposure = true;
-    m_x(exposure) = exposed;
-  }
+  m_x << f, startPhase, startDuty, startExposure > 0 ? startExposure : m_profile->exposure, k;
   keepPossible(m_x);
   descend(60);
   for (int round = 0; round < 2 && m_bends > 1 && bendEnvelope(); ++round) {
@@ -359,8 +306,7 @@ bool vpWaveformFit::hollow() const
 //! Grey levels, at each line. After settle().
 Eigen::ArrayXd vpWaveformFit::residuals() const
 {
-  const Eigen::ArrayXd left = m_light - m_coefficient[0] - envelope() * m_wave.value;
-  return m_settings.sharpened ? left - m_coefficient[static_cast<size_t>(m_linear) - 1] * m_overshoot : left;
+  return m_light - m_coefficient[0] - envelope() * m_wave.value;
 }
 
 //! Levenberg and Marquardt's method from m_x.

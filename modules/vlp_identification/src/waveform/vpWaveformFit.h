@@ -23,9 +23,8 @@ BEGIN_VISP_NAMESPACE
   line scaled to [-1, 1] over the profile.
 
   Offset and envelope are linear and solved for at each step (variable projection, Golub and Pereyra 1973);
-  Levenberg and Marquardt's method does the rest. A camera that sharpens makes lit lines beside dark ones
-  brighter: one more linear column. Where the grey scale cuts off lit lines, the wave is as bright as white,
-  and of a shorter exposure: a trapezoid that is cut off is one.
+  Levenberg and Marquardt's method does the rest. Where the grey scale cuts off lit lines, the wave is as
+  bright as white, and of a shorter exposure: a trapezoid that is cut off is one.
 
   Where the lines leave gaps between their exposures, an edge of a pulse may lie anywhere in one: the cost is
   flat there and its curvature says nothing. So integrate() takes mean and standard deviation from the
@@ -43,7 +42,6 @@ public:
     int envelopeOrder = 0;    // up to 4
     int envelopeUnknowns = 0; // that the given envelope was told with
     bool twoPulse = false;
-    bool sharpened = false; // the camera makes lit lines beside dark ones brighter
     double modelError = 0.03;
     double exposureTolerance = 0.02;
   };
@@ -54,11 +52,9 @@ public:
 
   /*!
     Least squares from a start. \param f Hz. \param startPhase Periods, at the middle of the profile. \param k
-    Phase difference, periods. \param startExposure s; 0: the profile's. \param near The start is good to a
-    line or so.
+    Phase difference, periods. \param startExposure s; 0: the profile's.
   */
-  bool run(double f, double startPhase, double startDuty, double k, double startExposure = 0,
-           bool near = false);
+  bool run(double f, double startPhase, double startDuty, double k, double startExposure = 0);
 
   /*!
     Pulse and exposure are both boxes, and which is which the profile does not say, nor which of them are the
@@ -112,7 +108,7 @@ public:
   double misfit() const;
 
 private:
-  static constexpr int mostLinear = 7;
+  static constexpr int mostLinear = 6;
 
   struct Prior {
     double chiSquare = 0, weight = 0, mean = 0;
@@ -149,7 +145,6 @@ private:
   void evaluateWave(const Vector &x, const Eigen::ArrayXd &time, vpPulseWave &wave,
                     vpPulseWave &second) const;
   void evaluateValue(const Vector &x);
-  void evaluateOvershoot(const Eigen::ArrayXd &value);
   //! Cost where offset and envelope fit best. Fills m_coefficient.
   double cost(const Vector &x);
   //! At m_x, with all that goes with it.
@@ -164,8 +159,6 @@ private:
     switch (parameter) {
     case phaseDifference:
       return m_settings.twoPulse;
-    case exposure:
-      return m_freeExposure;
     case duty:
       return m_freeDuty;
     default:
@@ -190,14 +183,13 @@ private:
   const vpStripeProfile *m_profile;
   Settings m_settings;
   int m_bends = 1;                        // envelope coefficients
-  int m_linear = 2;                       // offset, envelope and overshoot coefficients
+  int m_linear = 2;                       // offset and envelope coefficients
   double m_half = 1;                      // s
   double m_line = 0;                      // s, mean distance of the lines
   double m_startFrequency = 0;            // Hz
   double m_logEdgeSigma;                  // as the profile states it
   double m_logExposureSigma;              // prior of the exposure's logarithm
   double m_leastExposure, m_mostExposure; // s
-  bool m_freeExposure = true;
   bool m_freeDuty = true;
   double m_darkness = 0; // 1 / variance of the offset about 0
   // Of each line.
@@ -218,7 +210,7 @@ private:
   vpPulseWave m_wave, m_second;
   std::array<double, mostLinear> m_coefficient{}; // the linear parameters of the latest cost()
   // Kept from step to step for their memory.
-  Eigen::ArrayXd m_value, m_square, m_column, m_residual, m_overshoot;
+  Eigen::ArrayXd m_value, m_square, m_column, m_residual;
   Eigen::MatrixXd m_jacobian;
 };
 

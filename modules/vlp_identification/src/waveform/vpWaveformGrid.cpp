@@ -101,9 +101,6 @@ vpPulsePosterior::Lines vpWaveformFit::linesWith(double exposed) const
   vpPulsePosterior::Lines lines;
   lines.time = m_time.cast<float>();
   lines.light = m_light.cast<float>();
-  if (m_settings.sharpened) {
-    lines.light -= (m_coefficient[static_cast<size_t>(m_linear) - 1] * m_overshoot).cast<float>();
-  }
   lines.weight = m_weight.cast<float>();
   lines.lit = envelope().cast<float>();
   lines.dark = m_coefficient[0];

@@ -317,7 +317,7 @@ bool vpWaveformFit::preferStatedExposure()
   }
   // The fit from there may find its way back.
   const Vector &x = least->x;
-  return run(x(frequency), x(phase), x(duty), x(phaseDifference), x(exposure), true);
+  return run(x(frequency), x(phase), x(duty), x(phaseDifference), x(exposure));
 }
 
 END_VISP_NAMESPACE
