@@ -86,6 +86,13 @@ bool neighbours(const vpLedRoi &a, const vpLedRoi &b)
   return gapBetween(a.box, b.box) <= std::max(sizeOf(a.box), sizeOf(b.box)) / 2;
 }
 
+//! Whether two regions may show stripes together that neither shows: what dips from line to line in no strip
+//! of its samples does so only with what lies on other lines of the same samples.
+bool mayAlternate(const vpLedRoi &a, const vpLedRoi &b)
+{
+  return !a.even || !b.even || std::max(a.box.x, b.box.x) < std::min(a.box.br().x, b.box.br().x);
+}
+
 /*!
   Whether two regions may have one modulation: of one frequency, and of one phase at a time between them, as
   far as they tell.
@@ -290,7 +297,8 @@ void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<Region>
       for (size_t k = 0; k < regions.size(); ++k) {
         if (done[k] == 0 && !regions[k].roi.steady && !tells(regions[k].lamp) &&
             gapAlong(regions[pieces[n]].roi.box, regions[k].roi.box) <= roiDetector.longestPeriod &&
-            neighbours(regions[pieces[n]].roi, regions[k].roi)) {
+            neighbours(regions[pieces[n]].roi, regions[k].roi) &&
+            mayAlternate(regions[pieces[n]].roi, regions[k].roi)) {
           done[k] = 1;
           pieces.push_back(k);
           whole = joined(whole, regions[k].roi);
