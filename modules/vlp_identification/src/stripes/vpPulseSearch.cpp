@@ -20,6 +20,26 @@ void keepBetter(std::optional<vpWaveformFit> &best, vpWaveformFit &&fit)
   }
 }
 
+//! The best end of descents from many starts, of one frequency or nearly so: those that have come the
+//! farthest down after the first steps go on.
+std::optional<vpWaveformFit> bestFrom(std::vector<vpWaveformFit> &&begun)
+{
+  static const size_t few = 2;
+  for (vpWaveformFit &fit : begun) {
+    fit.approach();
+  }
+  const auto end = begun.begin() + static_cast<long>(std::min(few, begun.size()));
+  std::partial_sort(begun.begin(), end, begun.end(),
+                    [](const vpWaveformFit &a, const vpWaveformFit &b) { return a.cost() < b.cost(); });
+  std::optional<vpWaveformFit> best;
+  for (auto fit = begun.begin(); fit != end; ++fit) {
+    if (fit->arrive() && fit->preferStatedExposure()) {
+      keepBetter(best, std::move(*fit));
+    }
+  }
+  return best;
+}
+
 //! From where a fit may find the exposure, s: what is stated, and shorter and longer ones where that may be
 //! misstated.
 std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency)
@@ -174,18 +194,15 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse(double explained)
     if (best && std::min(explained, best->misfit()) < m_maxMisfit && isLikeliest(*best)) {
       break;
     }
-    std::optional<vpWaveformFit> found;
+    std::vector<vpWaveformFit> begun;
     for (double exposure : exposuresOf(*m_profile, candidate.frequency)) {
       for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
-        vpWaveformFit fit(*m_profile, settings, m_envelope);
         // The first harmonic peaks in the middle of the pulse.
-        if (fit.run(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure) &&
-            fit.preferStatedExposure()) {
-          keepBetter(found, std::move(fit));
-        }
+        begun.emplace_back(*m_profile, settings, m_envelope);
+        begun.back().begin(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure);
       }
     }
-    if (found) {
+    if (std::optional<vpWaveformFit> found = bestFrom(std::move(begun))) {
       found->leaveGap();
       keepBetter(best, std::move(*found));
     }
@@ -215,13 +232,15 @@ std::optional<vpWaveformFit> vpPulseSearch::twoPulses()
       if (f * std::abs(span) < 0.9) {
         continue;
       }
+      std::vector<vpWaveformFit> begun;
       for (double k : {0.15, 0.25, 0.35, 0.45}) {
         for (double phase : {0.0, 0.25, 0.5, 0.75}) {
-          vpWaveformFit fit(*m_profile, both, m_envelope);
-          if (fit.run(f, phase, 0.3, k) && fit.preferStatedExposure()) {
-            keepBetter(best, std::move(fit));
-          }
+          begun.emplace_back(*m_profile, both, m_envelope);
+          begun.back().begin(f, phase, 0.3, k);
         }
+      }
+      if (std::optional<vpWaveformFit> found = bestFrom(std::move(begun))) {
+        keepBetter(best, std::move(*found));
       }
     }
   }

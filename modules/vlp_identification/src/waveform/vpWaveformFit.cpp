@@ -243,11 +243,20 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
   g = r.head<parameters>(); // the linear ones are at their best: their gradient is 0
 }
 
-bool vpWaveformFit::run(double f, double startPhase, double startDuty, double k, double startExposure)
+void vpWaveformFit::begin(double f, double startPhase, double startDuty, double k, double startExposure)
 {
   m_startFrequency = f;
   m_x << f, startPhase, startDuty, startExposure > 0 ? startExposure : m_profile->exposure, k;
   keepPossible(m_x);
+}
+
+void vpWaveformFit::approach()
+{
+  descend(5);
+}
+
+bool vpWaveformFit::arrive()
+{
   descend(60);
   for (int round = 0; round < 2 && m_bends > 1 && bendEnvelope(); ++round) {
     descend(20);

@@ -51,10 +51,20 @@ public:
                 const std::vector<double> &envelope);
 
   /*!
-    Least squares from a start. \param f Hz. \param startPhase Periods, at the middle of the profile. \param k
-    Phase difference, periods. \param startExposure s; 0: the profile's.
+    Where to start from. \param f Hz. \param startPhase Periods, at the middle of the profile. \param k Phase
+    difference, periods. \param startExposure s; 0: the profile's.
   */
-  bool run(double f, double startPhase, double startDuty, double k, double startExposure = 0);
+  void begin(double f, double startPhase, double startDuty, double k, double startExposure = 0);
+  //! The first steps of least squares, which tell good starts from others.
+  void approach();
+  //! The rest of them. \return False where they lead nowhere.
+  bool arrive();
+  //! All from a start.
+  bool run(double f, double startPhase, double startDuty, double k, double startExposure = 0)
+  {
+    begin(f, startPhase, startDuty, k, startExposure);
+    return arrive();
+  }
 
   /*!
     Pulse and exposure are both boxes, and which is which the profile does not say, nor which of them are the
