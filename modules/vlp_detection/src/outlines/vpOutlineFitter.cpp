@@ -88,82 +88,108 @@ bool isSharp(const vpOutlineFit &fit)
   return fit.blur <= std::max(1.0, sharp * 0.5 * fit.outline.diameter());
 }
 
-//! How much brighter the brightest of a chord is than its region's level, grey levels.
-double lightOf(const vpLedChord &chord, const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+//! How much brighter than its level the brightest of a region is, grey levels.
+double lightOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 {
-  const int samples = chord.last - chord.first + 1;
-  return vpBrighter::brightest(lines[chord.line] + chord.first, samples) - roi.level;
-}
-
-double brightestOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
-{
-  double brightest = 0;
+  double brightest = roi.level;
   for (const vpLedChord &chord : roi.chords) {
-    brightest = std::max(brightest, lightOf(chord, lines, roi));
+    const int samples = chord.last - chord.first + 1;
+    brightest = std::max<double>(brightest, vpBrighter::brightest(lines[chord.line] + chord.first, samples));
   }
-  return brightest;
+  return brightest - roi.level;
 }
 
-//! What of each lit line is brighter than half its light.
-vpLedRoi brightPart(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
+//! What of each line is brighter than half of its light, of lines half as bright as the brightest.
+vpLedRoi brightHalf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 {
-  static const double half = 0.5, lit = 0.5; // of a line's light; of the brightest line's
-  const double brightest = brightestOf(lines, roi);
-  vpLedRoi part = roi;
-  part.chords.clear();
-  part.box = cv::Rect();
+  const double least = roi.level + 0.5 * lightOf(lines, roi);
+  vpLedRoi half = roi;
+  half.chords.clear();
+  half.box = cv::Rect();
   for (vpLedChord chord : roi.chords) {
-    const double light = lightOf(chord, lines, roi), least = roi.level + half * light;
-    if (light < lit * brightest) {
+    const unsigned char *row = lines[chord.line];
+    const int brightest = vpBrighter::brightest(row + chord.first, chord.last - chord.first + 1);
+    if (brightest < least) {
       continue;
     }
-    while (lines(chord.line, chord.first) < least) {
+    const double level = 0.5 * (roi.level + brightest);
+    while (row[chord.first] < level) {
       ++chord.first;
     }
-    while (lines(chord.line, chord.last) < least) {
+    while (row[chord.last] < level) {
       --chord.last;
     }
-    part.chords.push_back(chord);
-    part.box |= cv::Rect(chord.first, chord.line, chord.last - chord.first + 1, 1);
+    half.chords.push_back(chord);
+    half.box |= cv::Rect(chord.first, chord.line, chord.last - chord.first + 1, 1);
   }
-  return part;
+  return half;
 }
 
-//! Whether no rectangle is as near to the ends of a region's chords as an ellipse is.
-bool isRound(const std::vector<cv::Point2f> &ends, const vpLedRoi &roi)
-{
-  static const double worse = 3;
-  return vpChordShape::rectangleMisfit(ends) > worse * vpChordShape::ellipseMisfit(ends, roi.box);
-}
+const double nearlyPerfect = 0.93; // share of the ends
+const double alone = 0.8;          // evenness of a lamp without other light beside it
 
-/*!
-  The lamp alone, where its region holds dimmer light beside it as well, its ghost in a pane or a rim that it
-  lights, whose edges an ellipse about both takes for the lamp's. \param evenness Of that ellipse; 0: none.
-*/
-std::optional<vpOutlineFit> withoutGhost(const vpEdgeFitPicture &picture, const vpLedRoi &roi,
-                                         double shapeSigma, int maxIterations, double evenness)
+//! The likelier shape with edges where a region has them.
+struct Edges {
+  vpOutlineFit fit;    // a region where neither shape fits
+  double evenness = 0; // of the edges
+  double kept = 0;     // share of the ends
+  double misfit = 0;   // of an ellipse, grey levels^2
+  bool round = false;  // no rectangle is as near to the ends as an ellipse
+  bool ofLamp = false; // sharp, and even enough to be a lamp's
+};
+
+Edges edgesOf(const vpEdgeFitPicture &picture, const vpLedRoi &roi, const vpOutlineFitter &settings,
+              double likelyBlur)
 {
-  static const double more = 0.2, nearlyAlone = 0.7; // evenness
-  static const double nearlyAll = 0.93;              // of the ends
-  static const size_t enough = 16;                   // of them
-  const vpLedRoi part = brightPart(picture.lines, roi);
-  const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(part, picture.lines.cols));
-  if (ends.size() < enough || !isRound(ends, part)) {
-    return std::nullopt;
+  Edges found;
+  found.fit = vpOutlineFitter::boxOf(roi);
+  const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(roi, picture.lines.cols));
+  if (ends.size() < 6) {
+    return found;
   }
+  const double shapeSigma = settings.shapeSigma;
+  const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
   vpEdgeFit<vpEllipseModel>::Memory memory;
-  vpEdgeFit<vpEllipseModel> fit(picture, vpEllipseModel::from(ends, part.box), memory);
-  if (!fit.run(part.box, shapeSigma, {maxIterations}) || !holds(fit.result(), part) ||
-      fit.kept() < nearlyAll || fit.evenness().edges < std::max(nearlyAlone, evenness + more)) {
-    return std::nullopt;
+  vpEdgeFit<vpEllipseModel> ellipse(picture, start, memory);
+  // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
+  static const double nearlyAll = 0.97;
+  bool isEllipse = vpOutlineFitter::looksWhole(roi) &&
+                   ellipse.run(roi.box, shapeSigma, {settings.maxIterations, 2, 0.005, true}, likelyBlur) &&
+                   ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
+  if (!isEllipse) {
+    ellipse = vpEdgeFit<vpEllipseModel>(picture, start, memory);
+    isEllipse = ellipse.run(roi.box, shapeSigma, {settings.maxIterations}) && holds(ellipse.result(), roi);
   }
-  vpOutlineFit lamp = fit.result();
-  if (!isSharp(lamp)) {
-    return std::nullopt;
+  if (isEllipse) {
+    found.fit = ellipse.result();
+    found.evenness = ellipse.evenness().edges;
+    found.kept = ellipse.kept();
+    found.misfit = ellipse.misfit();
   }
-  static const double pulled = 0.04; // px, by what light there is beside the edge
-  lamp.outline.centreCovariance += pulled * pulled * Eigen::Matrix2d::Identity();
-  return lamp;
+  const bool even = found.evenness > evenEdge;
+  found.ofLamp = isEllipse && (even || (ellipse.prior() < rare && ellipse.kept() > nearlyPerfect));
+  static const double near = 0.015; // share of the radius: no rectangle is that near to an ellipse
+  const double misfit = vpChordShape::ellipseMisfit(ends, roi.box);
+  found.round = (even && misfit <= near * start.radius()) || vpChordShape::rectangleMisfit(ends) > 3 * misfit;
+  if (!found.round) {
+    vpEdgeFit<vpQuadrilateralModel>::Memory ofSides;
+    vpEdgeFit<vpQuadrilateralModel> sides(picture, vpQuadrilateralModel::from(ends), ofSides);
+    if (sides.run(roi.box, shapeSigma, {settings.maxIterations}) && sides.evenness().edges > evenEdge &&
+        holds(sides.result(), roi)) {
+      found.fit = even ? likelier(ellipse, sides) : sides.result();
+      if (!even) {
+        found.fit.outline.otherShape = 0; // no ellipse fits at all
+      }
+      if (found.fit.outline.shape == vpLampOutline::Shape::quadrilateral) {
+        found.kept = sides.kept();
+        found.evenness = sides.evenness().edges;
+        found.ofLamp = true;
+      }
+    }
+  }
+  found.ofLamp = found.ofLamp && isSharp(found.fit);
+  found.fit.sound = found.ofLamp && found.kept >= nearlyPerfect && found.evenness >= alone;
+  return found;
 }
 
 //! Where edges are uneven and leave much of the light about them unexplained, some are not the lamp's.
@@ -240,76 +266,32 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
                                   const std::vector<double> &samplePositions, const vpLedRoi &roi,
                                   double likelyBlur) const
 {
-  vpOutlineFit best = boxOf(roi);
   const bool fromBorderToBorder = roi.box.width >= lines.cols - 2 || roi.box.height >= lines.rows - 2;
   if (fromBorderToBorder) {
-    return best;
+    return boxOf(roi);
   }
-  const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(roi, lines.cols));
-  if (ends.size() < 6) {
-    return best;
-  }
-  const double ellipseMisfit = vpChordShape::ellipseMisfit(ends, roi.box);
-  const vpEllipseModel start = vpEllipseModel::from(ends, roi.box);
-  vpEdgeFit<vpEllipseModel>::Memory memory;
   const vpEdgeFitPicture picture{lines, linePositions, samplePositions, isAligned(samplePositions)};
-  vpEdgeFit<vpEllipseModel> ellipse(picture, start, memory);
-  // What is partly hidden has ends of other edges, from which a sharp edge finds no way.
-  static const double nearlyAll = 0.97, nearlyPerfect = 0.93;
-  bool isEllipse = looksWhole(roi) &&
-                   ellipse.run(roi.box, shapeSigma, {maxIterations, 2, 0.005, true}, likelyBlur) &&
-                   ellipse.kept() >= nearlyAll && holds(ellipse.result(), roi);
-  if (!isEllipse) {
-    ellipse = vpEdgeFit<vpEllipseModel>(picture, start, memory);
-    isEllipse = ellipse.run(roi.box, shapeSigma, {maxIterations}) && holds(ellipse.result(), roi);
-  }
-  static const double alone = 0.8; // evenness of a lamp without other light beside it
-  const double evenness = isEllipse ? ellipse.evenness().edges : 0;
-  if (evenness < alone) {
-    if (const auto lamp = withoutGhost(picture, roi, shapeSigma, maxIterations, evenness)) {
-      return *lamp;
+  Edges edges = edgesOf(picture, roi, *this, likelyBlur);
+  if (!edges.fit.sound) { // a lamp's ghost in a pane, or a housing that it lights, is dimmer than half of it
+    const Edges bright = edgesOf(picture, brightHalf(lines, roi), *this, 0);
+    if (bright.round && bright.fit.sound) {
+      static const double pulled = 0.04; // px, by what light there is beside the edge
+      edges = bright;
+      edges.fit.outline.centreCovariance += pulled * pulled * Eigen::Matrix2d::Identity();
     }
   }
-  if (isEllipse) {
-    best = ellipse.result();
-  }
-  bool even = evenness > evenEdge;
-  double kept = isEllipse ? ellipse.kept() : 0, edges = evenness; // of what is taken at last
-  static const double round = 0.015; // share of the radius: no rectangle is that near to an ellipse
-  const bool maySquare = !even || ellipseMisfit > round * start.radius();
-  const double sidesMisfit =
-      maySquare ? vpChordShape::rectangleMisfit(ends) : std::numeric_limits<double>::infinity();
-  if (sidesMisfit <= 3 * ellipseMisfit) {
-    vpEdgeFit<vpQuadrilateralModel>::Memory ofSides;
-    vpEdgeFit<vpQuadrilateralModel> sides(picture, vpQuadrilateralModel::from(ends), ofSides);
-    if (sides.run(roi.box, shapeSigma, {maxIterations}) && sides.evenness().edges > evenEdge &&
-        holds(sides.result(), roi)) {
-      best = even ? likelier(ellipse, sides) : sides.result();
-      if (!even) {
-        best.outline.otherShape = 0; // no ellipse fits at all
-      }
-      if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
-        kept = sides.kept();
-        edges = sides.evenness().edges;
-      }
-      even = true;
-    }
-  }
+  vpOutlineFit best = edges.fit;
   const bool cut = roi.cutAcross || roi.cutAlong;
-  const bool sound = best.outline.shape != vpLampOutline::Shape::region && isSharp(best) &&
-                     (best.outline.shape == vpLampOutline::Shape::quadrilateral || even ||
-                      (ellipse.prior() < rare && ellipse.kept() > nearlyPerfect));
-  best.sound = sound && kept >= nearlyPerfect && edges >= alone;
-  if (!cut && !sound) {
+  if (!cut && !edges.ofLamp) {
     if (const auto rim = vpRimFit::of(lines, roi)) {
       return *rim;
     }
   }
   const bool sided = best.outline.shape == vpLampOutline::Shape::quadrilateral;
-  if (cut && (!even || (sided && !showsSides(best.outline, lines.size())))) {
+  if (cut && (!(edges.evenness > evenEdge) || (sided && !showsSides(best.outline, lines.size())))) {
     best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
-  } else if (evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
-    addGhostVariance(best.outline, ellipse.misfit(), brightestOf(lines, roi));
+  } else if (edges.evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
+    addGhostVariance(best.outline, edges.misfit, lightOf(lines, roi));
   }
   if (best.outline.shape == vpLampOutline::Shape::quadrilateral) {
     vpRimFit::addHiddenSides(best.outline, vpChordShape::longestGap(roi));

@@ -119,16 +119,14 @@ bool mayBlinkAlike(const vpLampObservation &a, const vpLampObservation &b)
   return std::isnan(middles) || std::abs(std::remainder(middles, 1)) < most + sigmas * unknown;
 }
 
-//! Whether a region shows what another one shows better: both blink alike, and the middle of one lies within
-//! the other.
+//! Whether a region shows what another one shows better: both blink alike, and no two lamps overlap.
 bool isDoubleOf(const vpLampObservation &one, const vpLampObservation &other)
 {
-  auto holds = [](const vpLampOutline &outline, const Eigen::Vector2d &point) {
-    const Eigen::Vector4d box = outline.box();
-    return point.x() > box(0) && point.x() < box(2) && point.y() > box(1) && point.y() < box(3);
-  };
-  return tells(one) && tells(other) && one.covariance.trace() > other.covariance.trace() &&
-         mayBlinkAlike(one, other) && (holds(one.outline, other.point) || holds(other.outline, one.point));
+  const Eigen::Vector4d a = one.outline.box(), b = other.outline.box();
+  const bool overlap =
+      std::max(a(0), b(0)) < std::min(a(2), b(2)) && std::max(a(1), b(1)) < std::min(a(3), b(3));
+  return overlap && tells(one) && tells(other) && one.covariance.trace() > other.covariance.trace() &&
+         mayBlinkAlike(one, other);
 }
 } // namespace
 

@@ -18,7 +18,7 @@ BEGIN_VISP_NAMESPACE
 vpWaveformFit::vpWaveformFit(const vpStripeProfile &profile, const Settings &settings,
                              const std::vector<double> &envelope)
     : m_profile(&profile), m_settings(settings),
-      m_bends(1 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2)), m_linear(1 + m_bends)
+      m_bends(1 + std::clamp(settings.envelopeOrder, 0, mostLinear - 2))
 {
   const auto [first, last] = std::minmax_element(profile.time.begin(), profile.time.end());
   const auto n = static_cast<Eigen::Index>(profile.light.size());
@@ -152,12 +152,12 @@ double vpWaveformFit::cost(const Vector &x)
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, mostLinear, 1>;
   evaluateValue(x);
   m_square = m_value.square();
-  const Eigen::Index bends = m_bends, lines = m_time.size();
+  const Eigen::Index bends = m_bends, linear = 1 + bends, lines = m_time.size();
   std::array<double, 2 * mostLinear> ofWave, ofSquare;
   vpColumnProducts(m_ofWave.data(), lines, m_ofWave.cols(), m_value.data(), ofWave.data());
   vpColumnProducts(m_ofSquare.data(), lines, m_ofSquare.cols(), m_square.data(), ofSquare.data());
-  Small A(m_linear, m_linear);
-  Column b(m_linear);
+  Small A(linear, linear);
+  Column b(linear);
   A(0, 0) = m_weights;
   b(0) = m_lights;
   for (Eigen::Index k = 0; k < bends; ++k) {
@@ -176,11 +176,10 @@ double vpWaveformFit::cost(const Vector &x)
   const double least = leastOffset(c(1));
   if (c(0) < least) {
     const Column fixed = b - least * A.col(0);
-    c.tail(m_linear - 1) =
-        A.bottomRightCorner(m_linear - 1, m_linear - 1).ldlt().solve(fixed.tail(m_linear - 1));
+    c.tail(bends) = A.bottomRightCorner(bends, bends).ldlt().solve(fixed.tail(bends));
     c(0) = least;
   }
-  for (int k = 0; k < m_linear; ++k) {
+  for (Eigen::Index k = 0; k < linear; ++k) {
     m_coefficient[static_cast<size_t>(k)] = c(k);
   }
   if (!(c(1) > 0)) {
@@ -205,7 +204,7 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
 {
   // Columns: the nonlinear parameters, the offset, the envelope's coefficients.
   constexpr int most = parameters + mostLinear;
-  const Eigen::Index bends = m_bends, all = parameters + m_linear;
+  const Eigen::Index bends = m_bends, linear = 1 + bends, all = parameters + linear;
   m_jacobian.resize(m_time.size(), all);
   const Eigen::ArrayXd light = envelope();
   evaluateWave(m_x, m_time, m_wave, m_second);
@@ -236,10 +235,10 @@ void vpWaveformFit::normalEquations(Matrix &H, Vector &g)
     }
   }
   N(parameters, parameters) += m_darkness;
-  N.diagonal().tail(m_linear).array() += 1e-9 * N(parameters, parameters) + 1e-12;
-  const auto C = N.bottomLeftCorner(m_linear, parameters);
+  N.diagonal().tail(linear).array() += 1e-9 * N(parameters, parameters) + 1e-12;
+  const auto C = N.bottomLeftCorner(linear, parameters);
   H = N.topLeftCorner<parameters, parameters>() -
-      C.transpose() * N.bottomRightCorner(m_linear, m_linear).ldlt().solve(C);
+      C.transpose() * N.bottomRightCorner(linear, linear).ldlt().solve(C);
   g = r.head<parameters>(); // the linear ones are at their best: their gradient is 0
 }
 
@@ -363,7 +362,7 @@ void vpWaveformFit::descend(int iterations)
 
 int vpWaveformFit::degreesOfFreedom() const
 {
-  const int free = (m_settings.twoPulse ? parameters : parameters - 1) + m_linear;
+  const int free = (m_settings.twoPulse ? parameters : parameters - 1) + 1 + m_bends;
   return std::max(1, static_cast<int>(m_time.size()) - free);
 }
 

@@ -112,7 +112,8 @@ public:
   //! The same with what offset and envelope have to explain to be worth their unknowns (Schwarz 1978).
   double criterion() const
   {
-    return m_cost + (m_linear + m_settings.envelopeUnknowns) * std::log(static_cast<double>(m_time.size()));
+    return m_cost +
+           (1 + m_bends + m_settings.envelopeUnknowns) * std::log(static_cast<double>(m_time.size()));
   }
   //! Share of the stripes' power left unexplained, beyond what noise explains.
   double misfit() const;
@@ -193,7 +194,6 @@ private:
   const vpStripeProfile *m_profile;
   Settings m_settings;
   int m_bends = 1;                        // envelope coefficients
-  int m_linear = 2;                       // offset and envelope coefficients
   double m_half = 1;                      // s
   double m_line = 0;                      // s, mean distance of the lines
   double m_startFrequency = 0;            // Hz

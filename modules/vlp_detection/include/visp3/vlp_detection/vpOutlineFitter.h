@@ -45,8 +45,9 @@ struct VISP_EXPORT vpOutlineFit {
   determine the ellipse, a weak prior does (axes equal within `shapeSigma`), and the covariance includes it.
 
   Ellipse and quadrilateral compete by likelihood (Schwarz 1978); what the stripes do not tell apart adds to
-  the covariance. A lamp with no edge to fit, since it glows about a bright core or a lens blurs it, is placed
-  on the middle of its light, with a covariance that is a share of its size.
+  the covariance. Where the edges are not those of an evenly lit lamp, those of its brighter half are tried. A
+  lamp with no edge to fit, since it glows about a bright core or a lens blurs it, is placed on the middle of
+  its light, with a covariance that is a share of its size.
 */
 class VISP_EXPORT vpOutlineFitter
 {
