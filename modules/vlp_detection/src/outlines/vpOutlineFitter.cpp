@@ -277,6 +277,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
     if (bright.round && bright.fit.sound) {
       static const double pulled = 0.04; // px, by what light there is beside the edge
       edges = bright;
+      edges.fit.sound = false; // what is dimmer may be the lamp's as well
       edges.fit.outline.centreCovariance += pulled * pulled * Eigen::Matrix2d::Identity();
     }
   }
