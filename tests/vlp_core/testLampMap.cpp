@@ -269,6 +269,8 @@ TEST(LampMap, BadFilesAreRefusedWithFileLineAndField)
       {"lamps:\n  - {id: [A], position_m: [0, 0, 1], unmodulated: true}", {":2: lamps[0].id: a list of 1"}},
       {"lamps:\n  - {id: \"A\\nB\", position_m: [0, 0, 1], unmodulated: true}",
        {":2: lamps[0].id: A\\x0aB, expected"}},
+      {"lamps:\n  - {id: A\xce, position_m: [0, 0, 1], unmodulated: true}",
+       {":2: lamps[0].id: A\\xce, expected text in UTF-8"}},
       // the whole file
       {"", {":1: nothing, expected a mapping"}},
       {"# only a comment\n", {":1: nothing, expected a mapping"}},

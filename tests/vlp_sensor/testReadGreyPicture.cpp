@@ -157,6 +157,8 @@ TEST(ReadGreyPicture, WhatIsNoPictureIsAnError)
                 {folder / "c.jpg: the picture is cut short"});
   vpExpectError([&] { read(folder.write("d.png", std::string(5000, '\0'))); },
                 {folder / "d.png: no picture"});
+  vpExpectError([&] { read(folder.write("e.png", std::string(128, '\0') + "DICM")); },
+                {folder / "e.png: a DICOM file, expected"});
 }
 
 TEST(ReadGreyPicture, OtherDepthsAreAnError)

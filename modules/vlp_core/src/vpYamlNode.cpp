@@ -90,6 +90,16 @@ bool isWithin(double value, vpYamlNode::Range range)
   return true;
 }
 
+//! Of other bytes a file that is written has a substitute, the same for all.
+bool isUtf8(const std::string &text)
+{
+  size_t i = 0;
+  while (const size_t length = vpUtf8Length(text, i)) {
+    i += length;
+  }
+  return i == text.size();
+}
+
 bool readNumber(const YAML::Node &node, vpYamlNode::Range range, double &value)
 {
   return node.IsScalar() && !isQuoted(node) && vpParseNumber(node.Scalar(), value) && std::isfinite(value) &&
@@ -290,6 +300,9 @@ std::string vpYamlNode::text(const std::string &key) const
   const YAML::Node &node = m_impl->need(key, "text");
   if (!node.IsScalar() || node.Scalar().empty()) {
     m_impl->wrong(key, node, "text");
+  }
+  if (!isUtf8(node.Scalar())) {
+    m_impl->wrong(key, node, "text in UTF-8");
   }
   return node.Scalar();
 }

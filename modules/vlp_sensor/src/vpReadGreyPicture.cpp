@@ -79,6 +79,14 @@ bool isWholePng(const std::string &bytes)
   return false;
 }
 
+//! Whether OpenCV would give it to GDCM, which ends the program where it is damaged. DICOM PS3.10,
+//! clause 7.1.
+bool isDicom(const std::string &bytes)
+{
+  constexpr size_t preamble = 128;
+  return bytes.size() > preamble && bytes.compare(preamble, 4, "DICM") == 0;
+}
+
 [[noreturn]] void fail(const std::string &filename, const std::string &problem)
 {
   throw vpException(vpException::ioError, vpPrintable(filename) + ": " + problem);
@@ -97,6 +105,9 @@ void vpReadGreyPicture(const std::string &filename, vpImage<unsigned char> &I)
   if ((beginsWith(bytes, jpegSignature) && !isWholeJpeg(bytes)) ||
       (beginsWith(bytes, pngSignature) && !isWholePng(bytes))) {
     fail(filename, "the picture is cut short");
+  }
+  if (isDicom(bytes)) {
+    fail(filename, "a DICOM file, expected a picture of another format, such as PNG or JPEG");
   }
 
   cv::Mat picture;
