@@ -90,7 +90,7 @@ bool isWithin(double value, vpYamlNode::Range range)
   return true;
 }
 
-//! Of other bytes a file that is written has a substitute, the same for all.
+//! Whether it can be written: all other bytes would become one and the same character.
 bool isUtf8(const std::string &text)
 {
   size_t i = 0;

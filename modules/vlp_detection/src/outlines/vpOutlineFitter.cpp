@@ -138,6 +138,7 @@ struct Edges {
   bool ofLamp = false; // sharp, and even enough to be a lamp's
 };
 
+//! \param likelyBlur As vpOutlineFitter::fit()'s.
 Edges edgesOf(const vpEdgeFitPicture &picture, const vpLedRoi &roi, const vpOutlineFitter &settings,
               double likelyBlur)
 {
