@@ -196,6 +196,35 @@ TEST(StripeAnalyzer, LampThatNoLineShowsDarkIsNoShorterPulse)
   EXPECT_EQ(duties.within, 50);
 }
 
+// What an exposure of whole periods and a part shows is what the part would, but fainter and half a period
+// later for each of the whole ones.
+TEST(StripeAnalyzer, ExposureOfMoreThanAPeriodTellsTheDuty)
+{
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> beyond(0.1, 0.4), duty(0.25, 0.75);
+  for (const int whole : {1, 2}) {
+    Spread frequencies, duties;
+    for (unsigned int trial = 0; trial < 40; ++trial) {
+      Scene scene;
+      scene.radius = 60;
+      scene.exposure = 400e-6;
+      scene.seed = trial + 1;
+      scene.lamp.frequency = (whole + beyond(random)) / scene.exposure;
+      const double share = duty(random);
+      scene.lamp.pwm(share);
+      const vpStripeFeatures seen = scene.features();
+      ASSERT_EQ(seen.signal, Signal::pwm) << whole << ", trial " << trial;
+      frequencies.add(seen.frequency - scene.lamp.frequency, seen.frequencySigma);
+      duties.add(seen.duty - share, std::hypot(seen.dutySigma, 0.01));
+    }
+    frequencies.print("frequency, Hz");
+    duties.print("duty");
+    EXPECT_GE(frequencies.within, 39) << whole;
+    EXPECT_GE(duties.within, 39) << whole;
+    EXPECT_LT(duties.rms(), 0.03) << whole;
+  }
+}
+
 TEST(StripeAnalyzer, TwoPulsesAndTheirPhaseDifference)
 {
   std::mt19937 random(5);

@@ -212,7 +212,7 @@ TEST(WordFit, WordsUnlikeAnyPulses)
 
 TEST(WordFit, Statistics)
 {
-  static const int trials = 30, blindTrials = 3;
+  static const int trials = 30, blindTrials = 10;
   for (bool known : {true, false}) {
     std::cout << (known ? "Format known from the map:\n" : "Format unknown:\n");
     for (const Case &c : cases()) {

@@ -56,6 +56,15 @@ std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency
   return exposures;
 }
 
+/*!
+  Turns from the middle of the pulse that stripes show to that of the lamp's. Whole periods of the exposure
+  see the same at any time, and what is left of it lies half an odd number of periods off its middle.
+*/
+double turnsFromSeen(double frequency, double exposure)
+{
+  return 0.5 * std::floor(exposure * frequency);
+}
+
 //! Whether the exposure is about as stated.
 bool asStated(const vpWaveformFit &fit, const vpStripeProfile &profile)
 {
@@ -148,7 +157,9 @@ std::optional<vpWaveformFit> vpPulseSearch::fromPulses(double exposure) const
 {
   using P = vpWaveformFit;
   static const double drift = 0.5, longer = 0.3; // lines: over the profile; a pulse
-  std::optional<vpWaveformFit> best = fitFrom(*m_pulses, exposure);
+  vpStripeStarts::Pulses start = *m_pulses;
+  start.phase += turnsFromSeen(start.frequency, exposure);
+  std::optional<vpWaveformFit> best = fitFrom(start, exposure);
   if (best && best->repeats()) {
     const vpWaveformFit still = *best;
     const auto lines = static_cast<double>(m_profile->light.size());
@@ -199,7 +210,9 @@ std::optional<vpWaveformFit> vpPulseSearch::onePulse(double explained)
       for (double duty : {0.15, 0.3, 0.5, 0.7, 0.85}) {
         // The first harmonic peaks in the middle of the pulse.
         begun.emplace_back(*m_profile, settings, m_envelope);
-        begun.back().begin(candidate.frequency, 0.5 * duty - candidate.phase, duty, 0, exposure);
+        begun.back().begin(candidate.frequency,
+                           0.5 * duty - candidate.phase + turnsFromSeen(candidate.frequency, exposure), duty,
+                           0, exposure);
       }
     }
     if (std::optional<vpWaveformFit> found = bestFrom(std::move(begun))) {
@@ -217,7 +230,8 @@ std::optional<vpWaveformFit> vpPulseSearch::twoPulses()
   std::optional<vpWaveformFit> best;
   if (const std::optional<vpStripeStarts::Pulses> pulses = vpStripeStarts::pairsOfPulses(m_edges)) {
     vpWaveformFit fit(*m_profile, both, m_envelope);
-    if (fit.run(pulses->frequency, pulses->phase, pulses->duty, pulses->phaseDifference) &&
+    const double phase = pulses->phase + turnsFromSeen(pulses->frequency, m_profile->exposure);
+    if (fit.run(pulses->frequency, phase, pulses->duty, pulses->phaseDifference) &&
         fit.preferStatedExposure()) {
       if (fit.misfit() < allExplained) {
         return fit;

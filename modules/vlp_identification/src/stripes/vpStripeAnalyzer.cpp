@@ -112,8 +112,7 @@ void take(vpStripeFeatures &features, const vpWaveformFit &fit, bool twoPulse, d
 /*!
   A word in place of what leaves \e unexplained of the stripes' power. It has many chips to choose: it has to
   explain as much more as their number asks for (Schwarz 1978). Chips seen only once can follow any light:
-  such a word has to explain all but noise, and none is taken where pwm or twoPulse may yet be what the lamp
-  sends.
+  such a word has to explain all but noise.
 */
 std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
                                             const std::vector<double> &envelope, int envelopeOrder,
@@ -125,13 +124,13 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
   static const double exposureTolerance = 0.5;            // of its logarithm
   const double tolerance = std::hypot(exposureTolerance, profile.logExposureSigma);
   const vpWordSearch search(profile, {envelopeOrder, analyzer.modelError, tolerance}, envelope);
-  const bool neither = !(unexplained < analyzer.maxMisfit), unknown = analyzer.searchUnknownWords && neither;
   std::optional<vpWordSearch::Found> word = search.known(analyzer.words, wordMisfit);
   // A word without a name has two pulses or more, and fewer than three stripes would repeat none of them; its
   // lamp is off between them.
   static const size_t fewest = 3;
   static const double off = 0.7; // depth
-  if (unknown && stripes >= fewest && profile.depth() > off && (!word || word->inflation > explained)) {
+  if (analyzer.searchUnknownWords && stripes >= fewest && profile.depth() > off &&
+      (!word || word->inflation > explained)) {
     const std::optional<vpWordSearch::Found> other = search.blind(wordMisfit);
     static const double clearlyLess = 0.8;
     if (!word || (other && other->inflation < clearlyLess * word->inflation)) {
@@ -148,7 +147,7 @@ std::optional<vpWordSearch::Found> findWord(const vpStripeProfile &profile,
   const bool once = span < repeated * chips * word->word.chip;
   const double gain = static_cast<double>(profile.time.size()) *
                       std::log((unexplained + noise) / (word->word.misfit + noise));
-  if (gain < 2 * M_LN2 * chips + clearly || (once && !(neither && word->inflation < nearlyExplained))) {
+  if (gain < 2 * M_LN2 * chips + clearly || (once && !(word->inflation < nearlyExplained))) {
     return std::nullopt;
   }
   return word;
@@ -199,15 +198,6 @@ void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edge
   if (profile.isClipped()) {
     features.dutyClipped = profile.exposure * features.frequency;
     features.dutySigma = std::hypot(features.dutySigma, features.dutyClipped);
-  }
-  // An exposure of a period or more leaves a remainder of the stripes that other exposures, duties and
-  // offsets would leave as well.
-  static const double longExposure = 0.9; // periods
-  if (profile.exposure * features.frequency > longExposure) {
-    static const double anyDuty = 0.3, cycles = 0.1; // standard deviations, of cycles over the profile
-    features.dutySigma = std::max(features.dutySigma, anyDuty);
-    features.frequencySigma = std::max(features.frequencySigma, cycles / span);
-    features.frequencyBound = std::max(features.frequencyBound, cycles / span);
   }
 }
 
@@ -272,9 +262,7 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     byStripes->settings.envelopeUnknowns = 2 * static_cast<int>(peaks.size());
     alsoFrom(*byStripes);
   }
-  bool hollow = false; // as fitted
   if (pwm) {
-    hollow = pwm->hollow();
     pwm->integrate();
     take(features, *pwm, false, middle);
     if (pwm->hidesDuty()) {
@@ -296,7 +284,6 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     }
     if (two && two->misfit() < maxMisfit && (!pwm || two->criterion() < pwm->criterion()) &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
-      hollow = two->hollow();
       two->integrate();
       take(features, *two, true, middle);
       start = startOfTwo;
@@ -304,11 +291,10 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   }
   widen(features, profile, start->edgesAgree(features.signal == vpStripeFeatures::Signal::twoPulse));
   static const double certain = 0.04; // misfit from which a word may explain the stripes better
-  if (hollow || !(features.misfit < certain)) {
-    // A patchy emitter may be dark in between, but so are the chips of a word.
-    const double unexplained = hollow ? 1 : features.misfit;
-    const std::optional<vpWordSearch::Found> word = findWord(
-        profile, vpStripeStarts::envelope(profile, peaks, order), order, *this, unexplained, peaks.size());
+  if (!(features.misfit < certain)) {
+    const std::optional<vpWordSearch::Found> word =
+        findWord(profile, vpStripeStarts::envelope(profile, peaks, order), order, *this, features.misfit,
+                 peaks.size());
     if (word || !(features.misfit < maxMisfit)) {
       takeCoded(features, word);
     }

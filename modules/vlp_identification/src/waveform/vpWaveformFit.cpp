@@ -292,25 +292,6 @@ Eigen::ArrayXd vpWaveformFit::envelope() const
   return (m_powers * Eigen::Map<const Eigen::VectorXd>(m_coefficient.data() + 1, m_bends)).array();
 }
 
-bool vpWaveformFit::hollow() const
-{
-  static const double least = 0.25, bright = 0.3; // of the light to both sides; of the brightest line
-  const Eigen::ArrayXd light = envelope();
-  Eigen::ArrayXd before = light;
-  for (Eigen::Index i = 1; i < light.size(); ++i) {
-    before(i) = std::max(before(i - 1), light(i));
-  }
-  double after = 0;
-  for (Eigen::Index i = light.size() - 1; i >= 0; --i) {
-    after = std::max(after, light(i));
-    const double beside = std::min(before(i), after);
-    if (beside > bright * light.maxCoeff() && light(i) < least * beside) {
-      return true;
-    }
-  }
-  return false;
-}
-
 //! Grey levels, at each line. After settle().
 Eigen::ArrayXd vpWaveformFit::residuals() const
 {

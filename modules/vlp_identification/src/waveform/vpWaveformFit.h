@@ -99,11 +99,6 @@ public:
   //! What noise leaves of the frequency's standard deviation, Hz; the rest is of where edges hide from the
   //! lines. After integrate().
   double frequencyNoise() const;
-  /*!
-    Whether the lamp as it was fitted is nearly dark on lines between much brighter ones: few emitters are so,
-    and what was fitted may lack pulses, as a word does.
-  */
-  bool hollow() const;
   //! Whether few lines make a pattern that repeats over the whole profile: its edges pass from line to line
   //! all at once.
   bool repeats() const;
