@@ -135,6 +135,26 @@ TEST(LedRoiDetector, KeepsASmallLampBesideALargeOne)
       }
 }
 
+// A reflector's light falls off towards its rim: at its lowest level its ends hardly stand out, though its
+// middle is as bright as the lamp beside it.
+TEST(LedRoiDetector, KeepsASmallLampThatFadesOutBesideALargeOne)
+{
+  const double sigma = 10, u = 165, v = 100; // px
+  for (const double amplitude : {60, 120, 180}) {
+    vpImage<unsigned char> I = pictureOf({disc(80, v, 50, 150, 9, 0.5, 0.2)}, 300, 200).render();
+    for (unsigned int i = 0; i < I.getHeight(); ++i) {
+      for (unsigned int j = 0; i / 4 % 2 == 0 && j < I.getWidth(); ++j) {
+        const double square = ((i - v) * (i - v) + (j - u) * (j - u)) / (sigma * sigma);
+        I[i][j] = cv::saturate_cast<unsigned char>(I[i][j] + amplitude * std::exp(-0.5 * square));
+      }
+    }
+    const std::vector<vpLedRoi> rois = vpLedRoiDetector().detect(vpLinePicture(I, false).grey);
+    EXPECT_TRUE(std::any_of(rois.begin(), rois.end(), [&](const vpLedRoi &roi) {
+      return roi.box.contains(cv::Point2d(u, v)) && roi.box.width < 6 * sigma && roi.box.height > 2 * sigma;
+    })) << amplitude;
+  }
+}
+
 TEST(LedRoiDetector, DimLampBesideABrightOne)
 {
   for (const double gap : {10, 40})

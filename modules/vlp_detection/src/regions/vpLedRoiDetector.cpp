@@ -218,24 +218,6 @@ double bestBranch(const std::vector<Group> &tree, int node, const cv::Mat_<unsig
   return stands ? group.roi.lampness : 0;
 }
 
-/*!
-  Whether a small region beside or inside a larger one is a piece of its halo or a speck of its compression:
-  these have but a small share of its light, and not the shape of a lamp.
-*/
-bool crumbOf(const vpLedRoi &small, double step, const vpLedRoi &large, double light)
-{
-  static const double much = 2;
-  static const double goodLamp = 0.6;
-  static const double strayShare = 0.2;
-  if (large.box.area() < much * much * small.box.area() || small.lampness >= goodLamp ||
-      step >= strayShare * light) {
-    return false;
-  }
-  const cv::Size margin(large.box.width / 2, large.box.height / 2);
-  const cv::Rect around(large.box.tl() - cv::Point(margin), large.box.size() + margin + margin);
-  return (around & small.box).area() > 0;
-}
-
 //! Whether a region lies between the chords of a larger, hardly worse one: stripes of it that another level
 //! linked.
 bool partOf(const vpLedRoi &small, const vpLedRoi &large)
@@ -264,9 +246,8 @@ std::vector<vpLedRoi> sifted(const std::vector<Group> &groups)
 {
   std::vector<vpLedRoi> rois;
   for (const Group &small : groups) {
-    const bool part = std::any_of(groups.begin(), groups.end(), [&](const Group &large) {
-      return crumbOf(small.roi, small.edge.step, large.roi, large.edge.light) || partOf(small.roi, large.roi);
-    });
+    const bool part = std::any_of(groups.begin(), groups.end(),
+                                  [&](const Group &large) { return partOf(small.roi, large.roi); });
     if (!part) {
       rois.push_back(small.roi);
     }
