@@ -156,7 +156,8 @@ void vpLedDetector::complete(const vpLinePicture &picture, std::vector<Region> &
   }
 }
 
-//! Lamps whose glow joins them blink in two ways: brighter parts of such a region may tell alone.
+//! Lamps whose glow joins them blink in two ways, on which columns may not even agree: brighter parts of such
+//! a region may tell alone.
 void vpLedDetector::takeApart(const vpLinePicture &picture, std::vector<Region> &regions)
 {
   for (size_t i = regions.size(); i-- > 0;) {
@@ -164,8 +165,7 @@ void vpLedDetector::takeApart(const vpLinePicture &picture, std::vector<Region> 
     double darkest = 0;
     cv::minMaxLoc(picture.grey(roi.box), &darkest);
     for (const double times : {2.0, 4.0}) {
-      if (regions[i].lamp.features.stripes < 2 || !blinksSomehow(regions[i].lamp) ||
-          isWhole(regions[i].fit)) {
+      if (regions[i].lamp.features.stripes < 2 || tells(regions[i].lamp) || isWhole(regions[i].fit)) {
         break; // steady, one lamp, or taken apart already
       }
       vpLedRoiDetector bright = roiDetector;
