@@ -66,11 +66,12 @@ struct VISP_EXPORT vpLedRoi {
   convex, on an ellipse or a quadrilateral, with a sharp edge. So a dim lamp beside a bright one and lamps
   joined by their halos all get the level that suits them. The ceiling is such a region too, where it is
   brighter than the darkest part of the picture, and may have the shape of a lamp; it does not blink as the
-  lamps in front of it do, and these are chosen then. Parts of a larger region are left out at the end. In a whole picture the light of an uneven ceiling is taken off first: it rises by more than
-  a dim lamp does. What shines on for longer than a period of the slowest lamp, and dips in no strip of its
-  samples as a lamp does, is steady: it is not taken apart, and nothing is looked for in it. Nor is it in one
-  stripe without a dip, which tells no period. Where noise is so strong that single pixels do not show a lamp,
-  means of several along the lines are used as well.
+  lamps in front of it do, and these are chosen then. Parts of a larger region are left out at the end. In a
+  whole picture the light of an uneven ceiling is taken off first: it rises by more than a dim lamp does. What
+  shines on for longer than a period of the slowest lamp, and dips in no strip of its samples as a lamp does,
+  is steady: it is not taken apart, and nothing is looked for in it. Nor is it in one stripe without a dip,
+  which tells no period. Where noise is so strong that single pixels do not show a lamp, means of several
+  along the lines are used as well.
 */
 class VISP_EXPORT vpLedRoiDetector
 {
