@@ -136,7 +136,7 @@ TEST(LedRoiDetector, KeepsASmallLampBesideALargeOne)
 }
 
 // A reflector's light falls off towards its rim: at its lowest level its ends hardly stand out, though its
-// middle is as bright as the lamp beside it.
+// middle does.
 TEST(LedRoiDetector, KeepsASmallLampThatFadesOutBesideALargeOne)
 {
   const double sigma = 10, u = 165, v = 100; // px

@@ -57,8 +57,9 @@ std::vector<double> exposuresOf(const vpStripeProfile &profile, double frequency
 }
 
 /*!
-  Turns from the middle of the pulse that stripes show to that of the lamp's. Whole periods of the exposure
-  see the same at any time, and what is left of it lies half a period off its middle for each of them.
+  Turns from the middle of the pulse that stripes show to the middle of the lamp's. Whole periods of the
+  exposure see the same at any time, and what is left of it lies half a period off its middle for each of
+  them.
 */
 double turnsFromSeen(double frequency, double exposure)
 {

@@ -93,9 +93,8 @@ public:
   //! How far one lamp's exposure is off the camera's, beyond what the profile states of that: standard
   //! deviation of its logarithm.
   double exposureTolerance = 0.02;
-  //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained; no word of unknown format
-  //! is sought below. Known values: pwm lamps of phones leave up to 0.09, coded lamps
-  //! seen for less than a word from 0.165 on.
+  //! Share of the stripes' power that a pwm or twoPulse lamp may leave unexplained. Known values: pwm lamps
+  //! of phones leave up to 0.09, coded lamps seen for less than a word from 0.165 on.
   double maxMisfit = 0.13;
   double minAgreement = 0.85;     // of the halves of lines: the shutter's stripes do not vary along a line
   double minModulation = 0.05;    // depth of stripes below which a lamp counts as unmodulated
