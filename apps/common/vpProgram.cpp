@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -54,6 +55,11 @@ int failed(const std::string &problem)
   spdlog::error(problem);
   return static_cast<int>(vpExitCode::badInput);
 }
+
+int outOfMemory()
+{
+  return failed("not enough memory");
+}
 } // namespace
 
 int vpRunProgram(const std::string &name, const std::function<vpExitCode()> &run)
@@ -72,9 +78,12 @@ int vpExitStatus(const std::function<vpExitCode()> &run)
     const vpExitCode code = run();
     return std::cout.flush() ? static_cast<int>(code) : failed("stdout: cannot be written");
   } catch (const vpException &error) {
-    return failed(error.getStringMessage());
+    const bool memory = error.getCode() == vpException::memoryAllocationError;
+    return memory ? outOfMemory() : failed(error.getStringMessage());
+  } catch (const cv::Exception &error) {
+    return error.code == cv::Error::StsNoMem ? outOfMemory() : failed("unexpected: " + error.err);
   } catch (const std::bad_alloc &) {
-    return failed("not enough memory");
+    return outOfMemory();
   } catch (const std::exception &error) {
     return failed(std::string("unexpected: ") + error.what());
   }

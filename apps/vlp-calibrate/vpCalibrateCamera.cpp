@@ -15,9 +15,9 @@
 #include <visp3/vlp_core/vpAtomicFile.h>
 #include <visp3/vlp_core/vpCameraXml.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_sensor/vpWritePicture.h>
 
 #include "common/vpCommandLine.h"
-#include "common/vpPictureFile.h"
 #include "common/vpTextBlock.h"
 #include "vpCalibrate.h"
 #include "vpCalibrationOutput.h"

@@ -11,9 +11,9 @@
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_calibration/vpLampSurvey.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_sensor/vpWritePicture.h>
 
 #include "common/vpCommandLine.h"
-#include "common/vpPictureFile.h"
 #include "common/vpTextBlock.h"
 #include "vpCalibrate.h"
 #include "vpCalibrationOutput.h"

@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 #include <visp3/vlp_calibration/vpMountCalibration.h>
+#include <visp3/vlp_sensor/vpWritePicture.h>
 
-#include "common/vpPictureFile.h"
 #include "common/vpTextBlock.h"
 #include "vpCalibrate.h"
 #include "vpCalibrationOutput.h"

@@ -15,8 +15,8 @@
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpPoseText.h>
 #include <visp3/vlp_evaluation/vpFixLog.h>
+#include <visp3/vlp_sensor/vpWritePicture.h>
 
-#include "common/vpPictureFile.h"
 #include "common/vpVlpColours.h"
 
 BEGIN_VISP_NAMESPACE

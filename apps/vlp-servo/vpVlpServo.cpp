@@ -14,12 +14,12 @@
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/io/vpKeyboard.h>
+#include <visp3/vlp_core/vpNewFolder.h>
 #include <visp3/vlp_core/vpPrintable.h>
 #include <visp3/vlp_robot/vpOpenTurtleBot3.h>
 #include <visp3/vlp_servo/vpServoLog.h>
 
 #include "common/vpInterrupt.h"
-#include "common/vpNewFolder.h"
 #include "common/vpProgressBar.h"
 #include "vpServoDisplay.h"
 #include "vpServoSummary.h"

@@ -12,13 +12,13 @@
 #include <spdlog/spdlog.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpAtomicFile.h>
+#include <visp3/vlp_core/vpNewFolder.h>
 #include <visp3/vlp_core/vpNumberText.h>
 #include <visp3/vlp_core/vpTrajectory.h>
+#include <visp3/vlp_sensor/vpWritePicture.h>
 #include <visp3/vlp_simulation/vpSimulation.h>
 
 #include "common/vpInterrupt.h"
-#include "common/vpNewFolder.h"
-#include "common/vpPictureFile.h"
 #include "common/vpProgressBar.h"
 
 BEGIN_VISP_NAMESPACE

@@ -2,21 +2,18 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// The programs where system calls on their files fail or come short (shim/vpFaults.cpp): an error that names
-// the file, and outputs that are whole or not there.
+// The programs where system calls on their files fail or come short, or memory ends (shim/vpFaults.cpp): an
+// error that names the file, and outputs that are whole or not there.
 
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "common/vpProcess.h"
+#include "common/vpFaultyProcess.h"
 
 namespace
 {
@@ -24,50 +21,6 @@ namespace fs = std::filesystem;
 using Files = std::map<std::string, std::string>; // what is in each
 
 const std::string paperRoom = VLP_DATA_DIR "/paper-room", oldContent = "old\n";
-
-struct Fault {
-  std::string call, as, at;
-};
-
-void PrintTo(const Fault &fault, std::ostream *stream)
-{
-  *stream << fault.call << " " << fault.at << ": " << fault.as;
-}
-
-//! How a program came to its end.
-struct Ending {
-  int code = 0;
-  bool hit = false; // a call was made to fail
-  std::string out, err;
-};
-
-/*!
-  Runs a program, with that fault in what is under the folder \e under. A program that hangs is ended after a
-  time that none of them needs.
-*/
-Ending runWith(const Fault &fault, const std::string &under, const std::string &program,
-               const std::vector<std::string> &arguments)
-{
-  const vpTemporaryFolder marks;
-  const std::map<std::string, std::string> variables = {
-      {"LD_PRELOAD", VLP_FAULTS}, {"VLP_FAULT_CALL", fault.call}, {"VLP_FAULT_AS", fault.as},
-      {"VLP_FAULT_AT", fault.at}, {"VLP_FAULT_UNDER", under},     {"VLP_FAULT_HIT", marks / "hit"}};
-  for (const auto &[name, value] : variables) {
-    setenv(name.c_str(), value.c_str(), 1);
-  }
-  vpProcess process(program, arguments);
-  for (const auto &[name, value] : variables) {
-    unsetenv(name.c_str());
-  }
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!process.ended() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  if (!process.ended()) {
-    process.signal(SIGKILL);
-  }
-  return {process.wait(), marks.count() > 0, process.out(), process.err()};
-}
 
 //! All files below a folder, by their paths from there.
 Files filesOf(const std::string &folder)
@@ -133,7 +86,7 @@ protected:
     Files under their names are as before or whole, and there is nothing else. \param fails Whether the
     program has to give up. \return Whether the fault was hit.
   */
-  static bool tryFault(const Writer &writer, const Fault &fault, const Files &good, bool fails)
+  static bool tryFault(const Writer &writer, const vpFault &fault, const Files &good, bool fails)
   {
     SCOPED_TRACE(writer.program + ": " + testing::PrintToString(fault));
     const vpTemporaryFolder folder;
@@ -143,7 +96,7 @@ protected:
         folder.write(name, oldContent);
       }
     }
-    const Ending ending = runWith(fault, folder.path(), writer.program, argumentsOf(writer, folder));
+    const vpEnding ending = vpRunWith(fault, folder.path(), writer.program, argumentsOf(writer, folder));
     const bool thrownAway = fault.call == "close" && ending.code == 0; // a file that was only tried
     if (!ending.hit || !fails || thrownAway) {
       EXPECT_EQ(ending.code, 0) << ending.err;
@@ -202,6 +155,36 @@ protected:
     if (most > 1) {
       EXPECT_TRUE(tryFault(writer, {"write", "ENOSPC", "1+"}, all, true));
       EXPECT_TRUE(tryFault(writer, {"write", "short", "odd"}, all, false));
+    }
+  }
+
+  /*!
+    One of the first \e most large blocks of memory after the other is not there: an error, or no matter. No
+    file is left that is not whole. GDAL, which OpenCV asks of each format, ends the program itself.
+  */
+  void endMemory(const Writer &writer, int most)
+  {
+    const Files all = good(writer);
+    bool hit = true;
+    for (int i = 1; i <= most && hit; ++i) {
+      SCOPED_TRACE(writer.program + ": block " + std::to_string(i));
+      const vpTemporaryFolder folder;
+      const vpEnding ending = vpRunWith({"memory", "", std::to_string(i)}, VLP_DATA_DIR, writer.program,
+                                        argumentsOf(writer, folder));
+      hit = ending.hit;
+      EXPECT_TRUE(hit || i > 1) << "no large block";
+      if (ending.err.find("CPLMalloc(): Out of memory") != std::string::npos) {
+        continue;
+      }
+      const bool told = ending.err.find(writer.program + ": error: ") != std::string::npos;
+      EXPECT_TRUE(ending.code == 0 || (ending.code == 2 && told)) << ending.code << ": " << ending.err;
+      EXPECT_EQ(ending.err.find("unexpected"), std::string::npos) << ending.err;
+      if (ending.code == 0 && told) {
+        continue; // without a picture that could not be read
+      }
+      for (const auto &[name, bytes] : filesOf(folder.path())) {
+        EXPECT_TRUE(all.count(name) > 0 && (name.back() == '/' || whole(bytes, all.at(name)))) << name;
+      }
     }
   }
 
@@ -267,6 +250,20 @@ TEST_F(Faults, FirstCallOfEachProgram)
   }
 }
 
+TEST_F(Faults, MemoryThatEnds)
+{
+  for (const Writer &writer : {simulate(), locate(), overlay(), shutter()}) {
+    endMemory(writer, 4);
+  }
+}
+
+TEST_F(Faults, SlowMemoryThatEnds)
+{
+  for (const Writer &writer : {simulate(), locate(), overlay(), evaluate(), shutter()}) {
+    endMemory(writer, 40);
+  }
+}
+
 TEST_F(Faults, SlowEachCallOfEachProgram)
 {
   constexpr int more = 8; // than most of them make of a kind; a program runs once for each
@@ -282,8 +279,9 @@ TEST_F(Faults, InterruptedAndShortReads)
   ASSERT_EQ(undisturbed.wait(), 0);
   for (const char *as : {"EINTR", "short"}) {
     const vpTemporaryFolder outputs;
-    const Ending ending = runWith({"read", as, "odd"}, paperRoom, "vlp-locate",
-                                  {"--run", paperRoom, "--frames", "2", "--poses", outputs / "poses.tum"});
+    const vpEnding ending =
+        vpRunWith({"read", as, "odd"}, paperRoom, "vlp-locate",
+                  {"--run", paperRoom, "--frames", "2", "--poses", outputs / "poses.tum"});
     EXPECT_TRUE(ending.hit);
     EXPECT_EQ(ending.code, 0) << ending.err;
     EXPECT_EQ(outputs.read("poses.tum"), undisturbed.out());
@@ -296,8 +294,8 @@ TEST_F(Faults, InputsThatCannotBeRead)
   constexpr int inputs = 5; // rig, camera, lamps, list, a picture
   for (int i = 1; i <= inputs; ++i) {
     SCOPED_TRACE(i);
-    const Ending ending = runWith({"read", "EIO", std::to_string(i) + "+"}, paperRoom, "vlp-locate",
-                                  {"--run", paperRoom, "--frames", "1"});
+    const vpEnding ending = vpRunWith({"read", "EIO", std::to_string(i) + "+"}, paperRoom, "vlp-locate",
+                                      {"--run", paperRoom, "--frames", "1"});
     EXPECT_TRUE(ending.hit);
     EXPECT_EQ(ending.code, 2) << ending.err;
     expectOneError(ending.err, "vlp-locate", paperRoom);
@@ -307,13 +305,13 @@ TEST_F(Faults, InputsThatCannotBeRead)
 //! The driver's end of a serial line; the board's is no part of it.
 TEST_F(Faults, SerialLine)
 {
-  for (const Fault &fault : std::vector<Fault>{{"read", "EINTR", "odd"},
-                                               {"read", "short", "odd"},
-                                               {"write", "EINTR", "odd"},
-                                               {"write", "short", "odd"}}) {
+  for (const vpFault &fault : std::vector<vpFault>{{"read", "EINTR", "odd"},
+                                                   {"read", "short", "odd"},
+                                                   {"write", "EINTR", "odd"},
+                                                   {"write", "short", "odd"}}) {
     SCOPED_TRACE(testing::PrintToString(fault));
-    const Ending ending = runWith(fault, "/dev/pts/", "test_vlp_robot",
-                                  {"--gtest_filter=SerialTransport.CarriesEveryByteBothWays"});
+    const vpEnding ending = vpRunWith(fault, "/dev/pts/", "test_vlp_robot",
+                                      {"--gtest_filter=SerialTransport.CarriesEveryByteBothWays"});
     EXPECT_TRUE(ending.hit);
     EXPECT_EQ(ending.code, 0) << ending.out << ending.err;
   }

@@ -20,6 +20,9 @@
 
 #include <gtest/gtest.h>
 
+#ifdef VLP_FAULTS
+#include "common/vpFaultyProcess.h"
+#endif
 #include "common/vpProcess.h"
 #include "vpSimulatedArduino.h"
 
@@ -202,6 +205,35 @@ TEST(VlpLamp, APortThatIsUnpluggedIsOneErrorAndTheLampAsItWas)
     EXPECT_EQ(again.ask("show"), before);
   }
 }
+
+#ifdef VLP_FAULTS // else a sanitizer has to be loaded first
+TEST(VlpLamp, CallsThatComeShortAreNoMatterAndThoseThatFailAreOneError)
+{
+  const vpTemporaryFolder folder;
+  const std::string map = mapFile(folder);
+  const auto tell = [&](const vpFault &fault) {
+    vpSimulatedArduino lamp(VLP_LAMP_FIRMWARE);
+    Port port(firmware(lamp));
+    const vpEnding ending =
+        vpRunWith(fault, port.name(), "vlp-lamp", {"--port", port.name(), "--map", map, "--lamp", "one"});
+    EXPECT_TRUE(ending.hit);
+    EXPECT_EQ(ending.code == 2, ending.err.rfind("vlp-lamp: error: " + port.name(), 0) == 0) << ending.err;
+    return ending;
+  };
+  for (const std::string call : {"read", "write"}) {
+    for (const std::string as : {"EINTR", "short"}) {
+      SCOPED_TRACE(call + " " + as);
+      const vpEnding ending = tell({call, as, "odd"});
+      EXPECT_EQ(ending.code, 0) << ending.err;
+      EXPECT_EQ(ending.out.rfind("one  id=one frequency_hz=2270.148", 0), 0u) << ending.out;
+    }
+    for (const int at : {1, 2, 3}) {
+      SCOPED_TRACE(call + " " + std::to_string(at));
+      EXPECT_EQ(tell({call, "EIO", std::to_string(at)}).code, 2);
+    }
+  }
+}
+#endif
 
 TEST(VlpLamp, ALampThatSendsSomethingElseIsAnError)
 {

@@ -394,7 +394,8 @@ TEST(RosNodes, ARecordingBecomesARun)
   EXPECT_TRUE(std::equal(images[0].data.begin(), images[0].data.end(), frame.I.bitmap));
   EXPECT_EQ(vpReadOdometry(folder / "run/odometry.csv").size(), samples.size());
 
-  EXPECT_EQ(convert(file), "2 bag_to_run: error: " + (folder / "run") + ": is there already\n");
+  EXPECT_EQ(convert(file),
+            "2 bag_to_run: error: " + (folder / "run") + ": exists, expected a new or empty folder\n");
   std::filesystem::remove_all(folder / "run");
   const std::string half = folder.write("half.bag", folder.read("drive.bag").substr(0, 100000));
   EXPECT_EQ(convert(half).rfind("2 bag_to_run: error: ", 0), 0u);

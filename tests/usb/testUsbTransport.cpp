@@ -2,6 +2,9 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
+#include <set>
+#include <string>
+
 #include <gtest/gtest.h>
 #include <visp3/vlp_robot/vpOpenTurtleBot3.h>
 #include <visp3/vlp_robot/vpUsbTransport.h>
@@ -139,6 +142,36 @@ TEST_F(UsbTransport, PulledWhileDrivingItStandsAndComesBack)
   base->reconnect();
   vpDriveInRealTime(*base, {0.1, 0}, 0.5);
   EXPECT_NEAR(vpSpeedOf(board), 0.1, 0.005);
+}
+
+//! Pulled at one request after the other of opening, driving and closing.
+TEST_F(UsbTransport, PulledAtAnyRequestIsAnErrorThatNamesIt)
+{
+  const auto drive = [] {
+    const auto base = vpOpenTurtleBot3("opencr:usb");
+    vpDriveInRealTime(*base, {0.2, 0}, 0.1);
+    base->stop();
+  };
+  usb.plug(7);
+  drive();
+  const int all = usb.requests();
+  constexpr int first = 12; // the first ones, each; some of the rest, but for those that close
+  std::set<int> requests;
+  for (int k = 1; k <= first; ++k) {
+    requests.insert({k, first + k * (all - first) / (first + 2)});
+  }
+  for (const int request : requests) {
+    SCOPED_TRACE(std::to_string(request) + " of " + std::to_string(all));
+    usb.plug(7);
+    usb.loseAt(request);
+    vpExpectError(drive, {"opencr:usb"});
+    const double pulled = vpTimeOf(board);
+    usb.unplug();
+    EXPECT_LT(vpStandstillAfter(board, pulled), longest);
+  }
+  usb.plug(8);
+  drive(); // nothing is held that a later one needs
+  EXPECT_TRUE(kernelHasIt());
 }
 
 TEST_F(UsbTransport, ADeviceThatHangsIsAnErrorInTime)

@@ -80,6 +80,7 @@ void vpEmulatedUsbDevice::plug(int number)
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
     m_gone = false;
+    m_requests = m_last = 0;
     m_node = std::string("/dev/") + name;
     m_path = "/devices/pci0/usb1/1-" + std::to_string(number);
     plugged();
@@ -105,15 +106,32 @@ void vpEmulatedUsbDevice::unplug()
   }
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
-    m_gone = true;
-    while (!m_waiting.empty()) { // as the kernel ends what is on its way
-      finish(std::move(m_waiting.front()), -ESHUTDOWN, 0);
-      m_waiting.pop_front();
-    }
+    lose();
   }
   umockdev_testbed_uevent(m_testbed.get(), ("/sys" + m_path).c_str(), "remove");
   umockdev_testbed_remove_device(m_testbed.get(), ("/sys" + m_path).c_str());
   m_node.clear();
+}
+
+void vpEmulatedUsbDevice::lose()
+{
+  m_gone = true;
+  while (!m_waiting.empty()) { // as the kernel ends what is on its way
+    finish(std::move(m_waiting.front()), -ESHUTDOWN, 0);
+    m_waiting.pop_front();
+  }
+}
+
+void vpEmulatedUsbDevice::loseAt(int request)
+{
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  m_last = m_requests + request;
+}
+
+int vpEmulatedUsbDevice::requests() const
+{
+  const std::lock_guard<std::mutex> lock(m_mutex);
+  return m_requests;
 }
 
 gboolean vpEmulatedUsbDevice::handle(UMockdevIoctlBase *, UMockdevIoctlClient *client,
@@ -132,6 +150,9 @@ vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::answer(unsigned long request, U
   const auto number = [argument] {
     return *contents<unsigned int>(resolved(argument, 0, sizeof(unsigned int)));
   };
+  if (++m_requests == m_last) {
+    lose();
+  }
   if (request == USBDEVFS_REAPURB || request == USBDEVFS_REAPURBNDELAY) {
     return reap(argument, client);
   }

@@ -27,6 +27,9 @@ public:
   //! As device \e number of bus 1.
   void plug(int number);
   void unplug();
+  //! It is gone from the program's request of that number on, the next one being 1, before anybody is told.
+  void loseAt(int request);
+  int requests() const; // since it was plugged in
 
 protected:
   //! Not plugged in. \param descriptors Device and configuration, hexadecimal with blanks, the strings'
@@ -68,6 +71,7 @@ private:
 
   static gboolean handle(UMockdevIoctlBase *, UMockdevIoctlClient *client, vpEmulatedUsbDevice *self);
   static Data resolved(UMockdevIoctlData *data, size_t offset, size_t size);
+  void lose();
   Result answer(unsigned long request, UMockdevIoctlData *argument, const UMockdevIoctlClient *client);
   Result ofDriver(UMockdevIoctlData *argument);
   Result submit(UMockdevIoctlData *argument, const UMockdevIoctlClient *client);
@@ -85,8 +89,9 @@ private:
   std::string m_path;            // in sysfs
   std::set<std::string> m_nodes; // whose ioctls are answered: programs may still hold one that is gone
   bool m_gone = true;
-  std::deque<Urb> m_waiting; // bulk, for the device
-  std::deque<Urb> m_done;    // to be reaped
+  int m_requests = 0, m_last = 0; // of these the one that it is lost at; 0: none
+  std::deque<Urb> m_waiting;      // bulk, for the device
+  std::deque<Urb> m_done;         // to be reaped
 };
 
 #endif

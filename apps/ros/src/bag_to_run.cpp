@@ -4,19 +4,19 @@
  */
 // What rosbag recorded, as the folder of a run: for vlp-locate, vlp-calibrate and mvcam.
 
-#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpAtomicFile.h>
+#include <visp3/vlp_core/vpNewFolder.h>
 #include <visp3/vlp_core/vpNumberText.h>
+#include <visp3/vlp_sensor/vpWritePicture.h>
 
 #include "vpPictures.h"
 #include "vpRosMessages.h"
@@ -25,33 +25,6 @@ namespace
 {
 struct Options {
   std::string bag, out, image, odom, rig, lamps;
-};
-
-//! A new folder that is taken away again unless all went well.
-class NewFolder
-{
-public:
-  explicit NewFolder(const std::string &name) : m_name(name), m_written(name + ".part")
-  {
-    if (std::filesystem::exists(name)) {
-      throw vpException(vpException::ioError, name + ": is there already");
-    }
-    std::filesystem::remove_all(m_written);
-    std::filesystem::create_directories(m_written);
-  }
-  ~NewFolder()
-  {
-    std::error_code ignored;
-    std::filesystem::remove_all(m_written, ignored);
-  }
-  NewFolder(const NewFolder &) = delete;
-  NewFolder &operator=(const NewFolder &) = delete;
-
-  std::string file(const std::string &name) const { return m_written + "/" + name; }
-  void commit() { std::filesystem::rename(m_written, m_name); }
-
-private:
-  std::string m_name, m_written;
 };
 
 //! A picture, raw or compressed; nothing where the message is another.
@@ -69,7 +42,7 @@ std::optional<vpVlpFrame> frameOf(const rosbag::MessageInstance &message)
 void convert(const Options &options)
 {
   rosbag::Bag bag(options.bag);
-  NewFolder folder(options.out);
+  vpNewFolder folder(options.out);
   vpAtomicFile list(folder.file("frames.csv"));
   list.stream() << "timestamp_s,file\n";
   std::vector<vpOdometry> odometry;
@@ -87,9 +60,7 @@ void convert(const Options &options)
       const cv::Mat grey(static_cast<int>(frame->I.getHeight()), static_cast<int>(frame->I.getWidth()),
                          CV_8UC1,
                          const_cast<unsigned char *>(frame->I.bitmap)); // which is only read
-      if (!cv::imwrite(folder.file(name), grey)) {
-        throw vpException(vpException::ioError, folder.file(name) + ": cannot be written");
-      }
+      vpWritePicture(folder.file(name), grey);
       list.stream() << vpNumberText(frame->timestamp) << "," << name << "\n";
     }
   }

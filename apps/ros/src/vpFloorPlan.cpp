@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <Eigen/Geometry>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <visp3/core/vpException.h>
 #include <visp3/vlp_core/vpAtomicFile.h>
+#include <visp3/vlp_sensor/vpWritePicture.h>
 
 vpFloorPlan::vpFloorPlan(const vpLampMap &map)
 {
@@ -74,12 +74,7 @@ nav_msgs::OccupancyGrid vpFloorPlan::grid(const std::string &frameId) const
 void vpFloorPlan::save(const std::string &prefix) const
 {
   const cv::Mat grey = 254 - 76 * m_cells; // 254: free; 178: the shade, 30 % of the way to black
-  std::vector<unsigned char> bytes;
-  cv::imencode(".pgm", grey, bytes);
-  vpAtomicFile picture(prefix + ".pgm");
-  picture.stream().write(reinterpret_cast<const char *>(bytes.data()),
-                         static_cast<std::streamsize>(bytes.size()));
-  picture.commit();
+  vpWritePicture(prefix + ".pgm", grey);
   vpAtomicFile yaml(prefix + ".yaml");
   yaml.stream() << "image: " << prefix.substr(prefix.rfind('/') + 1) << ".pgm\nresolution: " << resolution
                 << "\norigin: [" << m_left << ", " << m_bottom

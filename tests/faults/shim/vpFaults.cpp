@@ -4,9 +4,10 @@
  */
 /*!
   \file vpFaults.cpp
-  For LD_PRELOAD: makes system calls of a program fail or come short. Environment:
+  For LD_PRELOAD: makes system calls of a program fail or come short, or its memory end. Environment:
 
-  - VLP_FAULT_CALL: open, read, write, close, rename, mkdir or fsync
+  - VLP_FAULT_CALL: open, read, write, close, rename, mkdir or fsync; or memory: blocks of 32 KiB or more
+    that a program asks for once it has opened a file under that path. The system always has small ones.
   - VLP_FAULT_UNDER: what their paths begin with, as a folder, `/dev/pts/` or `socket:`
   - VLP_FAULT_AS: ENOSPC, EIO or EINTR, for errno; or short: half of the bytes are read or written
   - VLP_FAULT_AT: which of these calls, `3` the third, `3+` it and all after it, `odd` the first, third, fifth
@@ -100,18 +101,35 @@ int failure()
   return -1;
 }
 
+std::atomic<bool> begun{false}; // a file was opened
+
 int openWith(const char *name, const char *path, int flags, mode_t mode)
 {
+  begun = begun || under(path);
   return hit("open", path) ? failure() : next<int(const char *, int, ...)>(name)(path, flags, mode);
 }
 
 FILE *fopenWith(const char *name, const char *path, const char *mode)
 {
+  begun = begun || under(path);
   if (hit("open", path)) {
     failure();
     return nullptr;
   }
   return next<FILE *(const char *, const char *)>(name)(path, mode);
+}
+
+void *outOfMemory()
+{
+  errno = ENOMEM;
+  return nullptr;
+}
+
+//! Whether there is no such block left.
+bool used(size_t bytes)
+{
+  constexpr size_t large = 1 << 15;
+  return bytes >= large && begun && hit("memory", variable("VLP_FAULT_UNDER"));
 }
 
 //! Of \e length bytes, how many to ask for.
@@ -122,6 +140,33 @@ size_t half(size_t length)
 } // namespace
 
 extern "C" {
+// Those of the C library, by the names that only it has.
+void *__libc_malloc(size_t bytes);
+void *__libc_calloc(size_t count, size_t bytes);
+void *__libc_realloc(void *before, size_t bytes);
+void *__libc_memalign(size_t alignment, size_t bytes);
+
+void *malloc(size_t bytes)
+{
+  return used(bytes) ? outOfMemory() : __libc_malloc(bytes);
+}
+
+void *calloc(size_t count, size_t bytes)
+{
+  return used(count * bytes) ? outOfMemory() : __libc_calloc(count, bytes);
+}
+
+void *realloc(void *before, size_t bytes)
+{
+  return used(bytes) ? outOfMemory() : __libc_realloc(before, bytes);
+}
+
+int posix_memalign(void **memory, size_t alignment, size_t bytes)
+{
+  *memory = used(bytes) ? outOfMemory() : __libc_memalign(alignment, bytes);
+  return *memory != nullptr ? 0 : ENOMEM;
+}
+
 int open(const char *path, int flags, ...)
 {
   va_list more;

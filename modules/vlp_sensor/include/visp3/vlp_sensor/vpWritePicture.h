@@ -2,8 +2,8 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#ifndef vpPictureFile_h
-#define vpPictureFile_h
+#ifndef vpWritePicture_h
+#define vpWritePicture_h
 
 #include <string>
 
@@ -16,7 +16,7 @@ BEGIN_VISP_NAMESPACE
   Writes a picture in the format of its name's ending, whole or not at all. \throw vpException (ioError) where
   it cannot be written.
 */
-void vpWritePicture(const std::string &name, const cv::Mat &picture);
+VISP_EXPORT void vpWritePicture(const std::string &name, const cv::Mat &picture);
 
 END_VISP_NAMESPACE
 

@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#include "common/vpNewFolder.h"
+#include <visp3/vlp_core/vpNewFolder.h>
 
 #include <system_error>
 

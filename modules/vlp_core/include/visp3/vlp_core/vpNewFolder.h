@@ -17,7 +17,7 @@ BEGIN_VISP_NAMESPACE
   A folder that is filled under another name beside it, and gets its own by commit(); without it, it goes
   away, with the folders above that were made for it.
 */
-class vpNewFolder
+class VISP_EXPORT vpNewFolder
 {
 public:
   //! \throw vpException (ioError) where there is something of that name already, unless it is an empty

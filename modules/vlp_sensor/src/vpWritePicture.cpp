@@ -2,7 +2,7 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-#include "vpPictureFile.h"
+#include <visp3/vlp_sensor/vpWritePicture.h>
 
 #include <filesystem>
 #include <vector>
@@ -16,7 +16,15 @@ BEGIN_VISP_NAMESPACE
 void vpWritePicture(const std::string &name, const cv::Mat &picture)
 {
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(std::filesystem::path(name).extension().string(), picture, bytes)) {
+  bool encoded = false;
+  try {
+    encoded = cv::imencode(std::filesystem::path(name).extension().string(), picture, bytes);
+  } catch (const cv::Exception &error) {
+    if (error.code == cv::Error::StsNoMem) {
+      throw;
+    }
+  }
+  if (!encoded) {
     throw vpException(vpException::ioError, name + ": the picture cannot be encoded");
   }
   vpAtomicFile file(name);
