@@ -91,13 +91,12 @@ std::vector<size_t> waists(const vpLevelStripes &level, const Group &group)
   makes the best lamps of its parts, weighted by their size. \e workLeft bounds the work on clutter.
 */
 void splitAtWaists(const vpLevelStripes &level, Group whole, const cv::Mat_<unsigned char> &lines,
-                   double dark, long &workLeft, std::vector<Group> &out,
-                   std::vector<std::pair<int, int>> &cuts)
+                   double dark, long &workLeft, std::vector<Group> &out)
 {
   static const double gain = 0.15;
   double best = whole.roi.lampness + gain;
   std::pair<Group, Group> parts;
-  std::pair<int, int> cut(-1, -1);
+  bool cut = false;
   const bool good = best >= vpChordShape::mostLampness(2 * whole.roi.box.height); // no cut will be better
   for (size_t k : good ? std::vector<size_t>() : waists(level, whole)) {
     workLeft -= static_cast<long>(whole.roi.chords.size() + whole.set.stripes.size());
@@ -111,16 +110,15 @@ void splitAtWaists(const vpLevelStripes &level, Group whole, const cv::Mat_<unsi
     if (mean > best) {
       best = mean;
       parts = {std::move(upper), std::move(lower)};
-      cut = whole.set.links[k];
+      cut = true;
     }
   }
-  if (cut.first < 0) {
+  if (!cut) {
     out.push_back(std::move(whole));
     return;
   }
-  cuts.push_back(cut);
-  splitAtWaists(level, std::move(parts.first), lines, dark, workLeft, out, cuts);
-  splitAtWaists(level, std::move(parts.second), lines, dark, workLeft, out, cuts);
+  splitAtWaists(level, std::move(parts.first), lines, dark, workLeft, out);
+  splitAtWaists(level, std::move(parts.second), lines, dark, workLeft, out);
 }
 
 } // namespace
@@ -129,22 +127,7 @@ std::vector<Group> vpLampGroup::lampsOf(const vpLevelStripes &level, vpLevelStri
                                         const cv::Mat_<unsigned char> &lines, double dark, long &workLeft)
 {
   std::vector<Group> parts;
-  std::vector<std::pair<int, int>> cuts;
-  splitAtWaists(level, groupOf(level, std::move(set), lines, dark), lines, dark, workLeft, parts, cuts);
-  auto partOf = [&](int stripe) {
-    return std::find_if(parts.begin(), parts.end(), [&](const Group &part) {
-      return std::find(part.set.stripes.begin(), part.set.stripes.end(), stripe) != part.set.stripes.end();
-    });
-  };
-  for (size_t k = 0; k < cuts.size() && parts.size() > 2; ++k) {
-    const auto upper = partOf(cuts[k].first);
-    const auto lower = partOf(cuts[k].second);
-    Group joined = groupOf(level, upper->set.joinedWith(lower->set, cuts[k]), lines, dark);
-    if (joined.roi.lampness >= meanLampness(*upper, *lower)) {
-      *upper = std::move(joined);
-      parts.erase(lower);
-    }
-  }
+  splitAtWaists(level, groupOf(level, std::move(set), lines, dark), lines, dark, workLeft, parts);
   return parts;
 }
 

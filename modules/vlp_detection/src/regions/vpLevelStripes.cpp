@@ -219,15 +219,6 @@ std::pair<vpLevelStripes::Set, vpLevelStripes::Set> vpLevelStripes::Set::cutAt(s
   return parts;
 }
 
-vpLevelStripes::Set vpLevelStripes::Set::joinedWith(const Set &other, const std::pair<int, int> &link) const
-{
-  Set joined = *this;
-  joined.stripes.insert(joined.stripes.end(), other.stripes.begin(), other.stripes.end());
-  joined.links.insert(joined.links.end(), other.links.begin(), other.links.end());
-  joined.links.push_back(link);
-  return joined;
-}
-
 std::vector<vpLevelStripes::Set> vpLevelStripes::sets(double maxDarkGap, double mostLines) const
 {
   std::vector<int> order(stripes.size());

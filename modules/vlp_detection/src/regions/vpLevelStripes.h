@@ -41,7 +41,6 @@ struct vpLevelStripes {
 
     //! The two sets that remain without a link: that of its first stripe, and that of its second.
     std::pair<Set, Set> cutAt(size_t link) const;
-    Set joinedWith(const Set &other, const std::pair<int, int> &link) const;
   };
 
   double grey = 0;
