@@ -80,7 +80,7 @@ void vpEmulatedUsbDevice::plug(int number)
   {
     const std::lock_guard<std::mutex> lock(m_mutex);
     m_gone = false;
-    m_requests = m_last = 0;
+    m_requestsLeft = 0;
     m_node = std::string("/dev/") + name;
     m_path = "/devices/pci0/usb1/1-" + std::to_string(number);
     plugged();
@@ -125,13 +125,7 @@ void vpEmulatedUsbDevice::lose()
 void vpEmulatedUsbDevice::loseAt(int request)
 {
   const std::lock_guard<std::mutex> lock(m_mutex);
-  m_last = m_requests + request;
-}
-
-int vpEmulatedUsbDevice::requests() const
-{
-  const std::lock_guard<std::mutex> lock(m_mutex);
-  return m_requests;
+  m_requestsLeft = request;
 }
 
 gboolean vpEmulatedUsbDevice::handle(UMockdevIoctlBase *, UMockdevIoctlClient *client,
@@ -150,7 +144,7 @@ vpEmulatedUsbDevice::Result vpEmulatedUsbDevice::answer(unsigned long request, U
   const auto number = [argument] {
     return *contents<unsigned int>(resolved(argument, 0, sizeof(unsigned int)));
   };
-  if (++m_requests == m_last) {
+  if (m_requestsLeft > 0 && --m_requestsLeft == 0) {
     lose();
   }
   if (request == USBDEVFS_REAPURB || request == USBDEVFS_REAPURBNDELAY) {

@@ -29,7 +29,6 @@ public:
   void unplug();
   //! It is gone from the program's request of that number on, the next one being 1, before anybody is told.
   void loseAt(int request);
-  int requests() const; // since it was plugged in
 
 protected:
   //! Not plugged in. \param descriptors Device and configuration, hexadecimal with blanks, the strings'
@@ -89,9 +88,9 @@ private:
   std::string m_path;            // in sysfs
   std::set<std::string> m_nodes; // whose ioctls are answered: programs may still hold one that is gone
   bool m_gone = true;
-  int m_requests = 0, m_last = 0; // of these the one that it is lost at; 0: none
-  std::deque<Urb> m_waiting;      // bulk, for the device
-  std::deque<Urb> m_done;         // to be reaped
+  int m_requestsLeft = 0;    // until it is lost; 0: it is not
+  std::deque<Urb> m_waiting; // bulk, for the device
+  std::deque<Urb> m_done;    // to be reaped
 };
 
 #endif
