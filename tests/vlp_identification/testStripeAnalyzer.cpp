@@ -402,6 +402,35 @@ TEST(StripeAnalyzer, ABowHidesNoStripes)
   }
 }
 
+namespace
+{
+//! Share of an exposure that pulses of a length \e duty light, the first one from \e phase on, both in
+//! periods.
+double litShare(double frequency, double phase, double duty, double begin, double exposure)
+{
+  const auto litUntil = [duty](double periods) {
+    return std::floor(periods) * duty + std::min(periods - std::floor(periods), duty);
+  };
+  return (litUntil(frequency * (begin + exposure) - phase) - litUntil(frequency * begin - phase)) /
+         (frequency * exposure);
+}
+
+//! Of \e lines of an even lamp. \param lit Its share, of an exposure that begins at a time.
+template <class Lit>
+vpStripeProfile profileOf(int lines, double line, double exposure, std::mt19937 &random, const Lit &lit)
+{
+  std::normal_distribution<double> noise(0, 0.3);
+  vpStripeProfile profile;
+  profile.exposure = exposure;
+  for (int i = 0; i < lines; ++i) {
+    profile.time.push_back(line * i + 0.5 * exposure);
+    profile.light.push_back(150 * lit(line * i) + noise(random));
+    profile.sigma.push_back(0.3);
+  }
+  return profile;
+}
+} // namespace
+
 //! Stripes of nearly five lines, which drift along the lines by a part of one: five lines that repeat, under
 //! an envelope that bends, look alike.
 TEST(StripeAnalyzer, StripesThatNearlyRepeatWithTheLines)
@@ -409,29 +438,53 @@ TEST(StripeAnalyzer, StripesThatNearlyRepeatWithTheLines)
   const double line = 40e-6, exposure = 25e-6;
   const int lines = 66;
   std::mt19937 random(3);
-  std::normal_distribution<double> noise(0, 0.3);
   for (const double drift : {-0.6, -0.5, -0.4, 0.4, 0.5, 0.6}) { // lines, over all of them
     for (const double duty : {0.25, 0.35, 0.45}) {
       for (int k = 0; k < 20; ++k) {
         const double frequency = (1 + drift / lines) / (5 * line);
-        vpStripeProfile profile;
+        vpStripeProfile profile = profileOf(lines, line, exposure, random, [&](double begin) {
+          return litShare(frequency, 0.05 * k, duty, begin, exposure);
+        });
         profile.exposure = 0.42 * exposure; // as the rig states it
         profile.logExposureSigma = 0.69;
-        for (int i = 0; i < lines; ++i) {
-          double lit = 0; // share of the exposure
-          for (int period = -1; period <= lines / 5 + 1; ++period) {
-            const double on = (period + 0.05 * k) / frequency, begin = line * i, end = begin + exposure;
-            lit += std::max(0.0, std::min(end, on + duty / frequency) - std::max(begin, on)) / exposure;
-          }
-          profile.time.push_back(line * i + 0.5 * exposure);
-          profile.light.push_back(150 * lit + noise(random));
-          profile.sigma.push_back(0.3);
-        }
         const vpStripeFeatures features = vpStripeAnalyzer().analyze(profile);
         EXPECT_NEAR(features.frequency, frequency, 5 * features.frequencySigma)
             << "drift " << drift << ", duty " << duty << ", phase " << 0.05 * k;
       }
     }
+  }
+}
+
+//! Two pulses every 2.5 and every 2.4 lines: five and twelve lines that nearly repeat, and both pulses may be
+//! longer or shorter along a ridge.
+TEST(StripeAnalyzer, TwoPulsesThatNearlyRepeatWithTheLines)
+{
+  const double line = 40e-6;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double lineRates : {0.4008, 0.4167}) {
+    Spread frequencies, duties;
+    for (int trial = 0; trial < 60; ++trial) {
+      const double frequency = (lineRates + 0.0004 * (uniform(random) - 0.5)) / line, phase = uniform(random),
+                   duty = 0.2 + 0.2 * uniform(random), k = 0.25 + 0.17 * uniform(random);
+      const vpStripeProfile profile = profileOf(146, line, line, random, [&](double begin) {
+        return litShare(frequency, phase, 0.5 * duty, begin, line) +
+               litShare(frequency, phase + k, 0.5 * duty, begin, line);
+      });
+      vpStripeAnalyzer analyzer;
+      analyzer.minFrequency = 5000; // or one period may be taken for two
+      const vpStripeFeatures features = analyzer.analyze(profile);
+      if (features.signal == Signal::twoPulse) {
+        frequencies.add(features.frequency - frequency, features.frequencySigma);
+        duties.add(features.duty - duty, features.dutySigma);
+      }
+    }
+    std::cout << frequencies.count << " at " << lineRates << " of the line rate\n";
+    frequencies.print("frequency, Hz");
+    duties.print("duty");
+    EXPECT_GE(frequencies.count, 50);
+    EXPECT_LT(frequencies.most, 3);
+    EXPECT_LT(duties.most, 3);
   }
 }
 

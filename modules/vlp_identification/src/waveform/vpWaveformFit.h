@@ -134,7 +134,7 @@ private:
   Posterior onGrid(const Posterior &bell);
   vpPulsePosterior::Lines linesWith(double exposed) const;
   bool goOnFrom(const Eigen::Vector3d &place);
-  Moments sweep(const Matrix &covariance, int sweeps, double temperature, Uniform &uniform);
+  Moments sweep(const Matrix &covariance, int sweeps, double temperature, Vector &x, Uniform &uniform);
   double slice(const Vector &axis, double width, double level, Vector &x, double &here, Uniform &uniform);
   void judgeResiduals();
   vpDutySlice slice(double atDuty);

@@ -20,14 +20,27 @@ public:
 
   void add(const Vector &x, double weight, double cost)
   {
-    if (cost < m_leastCost) {
-      m_leastCost = cost;
-      m_likeliest = x;
-    }
+    keepLikeliest(x, cost);
     const Vector apart = x - m_about;
     m_sum += weight;
     m_first += weight * apart;
     m_second += weight * apart * apart.transpose();
+  }
+  //! Samples about the same place.
+  void add(const Moments &other)
+  {
+    keepLikeliest(other.m_likeliest, other.m_leastCost);
+    m_sum += other.m_sum;
+    m_first += other.m_first;
+    m_second += other.m_second;
+  }
+  //! Whether no mean is farther from the other's than so many standard deviations of all samples.
+  bool isNear(const Moments &other, double sigmas) const
+  {
+    Moments both = *this;
+    both.add(other);
+    const Vector variance = both.covariance().diagonal();
+    return ((mean() - other.mean()).array().square() <= sigmas * sigmas * variance.array()).all();
   }
   Vector mean() const { return m_about + m_first / m_sum; }
   Matrix covariance() const
@@ -39,6 +52,14 @@ public:
   double leastCost() const { return m_leastCost; }
 
 private:
+  void keepLikeliest(const Vector &x, double cost)
+  {
+    if (cost < m_leastCost) {
+      m_leastCost = cost;
+      m_likeliest = x;
+    }
+  }
+
   Vector m_about, m_first = Vector::Zero(), m_likeliest = Vector::Zero();
   Matrix m_second = Matrix::Zero();
   double m_sum = 0, m_leastCost = std::numeric_limits<double>::infinity();

@@ -100,9 +100,9 @@ bool vpWaveformFit::hidesDuty() const
 bool vpWaveformFit::repeats() const
 {
   static const double drift = 1.5;                // lines, of a pattern that repeats, over the profile
-  static const int longest = 8;                   // lines, of such a pattern
+  static const int longest = 8;                   // lines, of such a pattern, for each pulse
   const double periods = m_x(frequency) * m_line; // of a line
-  for (int pattern = 1; pattern <= longest; ++pattern) {
+  for (int pattern = 1; pattern <= longest * pulses(); ++pattern) {
     if (std::abs(std::remainder(pattern * periods, 1)) * static_cast<double>(m_time.size()) < drift) {
       return true;
     }
@@ -182,26 +182,37 @@ double vpWaveformFit::frequencyNoise() const
 /*!
   Mean and covariance of exp(-cost / (2 inflation)) by slice sampling (Neal 2003) from the minimum, which
   needs no shape to be right: first hot, which finds a deeper minimum where walls hide it and tells the axes
-  of the shape; then as it is.
+  of the shape; then as it is. Along a ridge samples change slowly: it goes on, each time as long again and
+  along the axes of all samples so far, until the mean holds.
 */
 vpWaveformFit::Posterior vpWaveformFit::sliced(const Posterior &bell)
 {
-  static const int hotSweeps = 10, sweeps = 40;
-  static const double hot = 32; // temperature
+  static const int hotSweeps = 10, leastSweeps = 20, mostSweeps = 1280;
+  static const double hot = 32, // temperature
+      holds = 1 / 3.;           // standard deviations, from one half of the samples to the other
   Uniform uniform;
-  const Moments first = sweep(bell.covariance, hotSweeps, hot, uniform);
+  Vector x = m_x;
+  const Moments first = sweep(bell.covariance, hotSweeps, hot, x, uniform);
   if (first.leastCost() < m_cost) {
     m_x = first.likeliest();
     descend(hotSweeps);
     judgeResiduals();
   }
-  const Moments all = sweep(first.covariance(), sweeps, 1, uniform);
+  x = m_x;
+  Moments all = sweep(first.covariance(), leastSweeps, 1, x, uniform);
+  bool held = false;
+  for (int sweeps = leastSweeps; !held && 2 * sweeps <= mostSweeps; sweeps *= 2) {
+    const Moments again = sweep(all.covariance(), sweeps, 1, x, uniform);
+    held = all.isNear(again, holds);
+    all.add(again);
+  }
   return {all.mean(), all.covariance()};
 }
 
-//! Samples of exp(-cost / (2 inflation temperature)) from m_x on, along the axes of a covariance.
+//! Samples of exp(-cost / (2 inflation temperature)) from \e x on, along the axes of a covariance. \param x
+//! Becomes the last one.
 vpWaveformFit::Moments vpWaveformFit::sweep(const Matrix &covariance, int sweeps, double temperature,
-                                            Uniform &uniform)
+                                            Vector &x, Uniform &uniform)
 {
   // Axes of the correlations: the parameters have units of their own.
   Vector scale = covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -213,9 +224,9 @@ vpWaveformFit::Moments vpWaveformFit::sweep(const Matrix &covariance, int sweeps
                                                     perScale.asDiagonal());
   const Matrix axes =
       scale.asDiagonal() * shape.eigenvectors() * shape.eigenvalues().cwiseMax(1e-9).cwiseSqrt().asDiagonal();
-  Vector x = m_x, width = Vector::Constant(2 * std::sqrt(temperature));
+  Vector width = Vector::Constant(2 * std::sqrt(temperature));
   double here = cost(x);
-  Moments moments(x);
+  Moments moments(m_x);
   for (int k = 0; k < sweeps * parameters; ++k) {
     const int which = k % parameters;
     const Vector axis = axes.col(which);
