@@ -4,6 +4,8 @@
  */
 // Random fault sequences of the servo loop in simulated time: what became of each, and whether a property
 // broke. bench_faultSequences [SEQUENCES] [FIRST SEED]: rows of Markdown tables; exit code 1 where one broke.
+// bench_faultSequences alone [DRIVES]: each fault by itself. bench_faultSequences torn [SEQUENCES]: pictures
+// are lost and then torn.
 
 #include <cstdio>
 #include <cstdlib>
@@ -60,6 +62,27 @@ void eachAlone(long drives)
                 drives - arrived, longest, 1000 * farthest);
   }
 }
+//! \return Exit code.
+int lostThenTorn(long sequences)
+{
+  std::mt19937_64 random(1);
+  long arrived = 0, broken = 0;
+  double farthest = 0; // m
+  for (long seed = 1; seed <= sequences; ++seed) {
+    const vpFaultSequence sequence(vpFaultSequence::lostThenTorn(random), static_cast<std::uint64_t>(seed));
+    if (sequence.run.end == vpServoRun::End::arrived) {
+      ++arrived;
+      farthest = std::max(farthest, sequence.missedBy());
+    }
+    if (!sequence.broken.empty()) {
+      ++broken;
+      std::fprintf(stderr, "seed %ld: %s\n", seed, sequence.broken.c_str());
+    }
+  }
+  std::printf("%ld sequences, %ld arrived, at most %.0f mm off the end of the path; broken: %ld\n", sequences,
+              arrived, 1000 * farthest, broken);
+  return broken == 0 ? 0 : 1;
+}
 } // namespace
 
 int main(int argc, char **argv)
@@ -67,6 +90,9 @@ int main(int argc, char **argv)
   if (argc > 1 && std::string(argv[1]) == "alone") {
     eachAlone(argc > 2 ? std::atol(argv[2]) : 100);
     return 0;
+  }
+  if (argc > 1 && std::string(argv[1]) == "torn") {
+    return lostThenTorn(argc > 2 ? std::atol(argv[2]) : 1000);
   }
   const long sequences = argc > 1 ? std::atol(argv[1]) : 1000;
   const long first = argc > 2 ? std::atol(argv[2]) : 1;

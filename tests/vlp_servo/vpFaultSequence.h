@@ -95,6 +95,20 @@ public:
     return one;
   }
 
+  //! Pictures are lost, and then torn: a part of each is what the robot saw before.
+  static std::vector<vpServoFault> lostThenTorn(std::mt19937_64 &random)
+  {
+    std::vector<vpServoFault> faults = {drawn(vpServoFault::Kind::frameLost, random),
+                                        drawn(vpServoFault::Kind::frameTorn, random)};
+    std::uniform_real_distribution<double> lost(0.5, 1.8), torn(1, 2.5), whole(0.3, 0.7);
+    faults[0].from = 0.4 + 0.25 * faults[0].from; // under way
+    faults[0].until = faults[0].from + lost(random);
+    faults[1].from = faults[0].until - 0.1;
+    faults[1].until = faults[1].from + torn(random);
+    faults[1].size = whole(random);
+    return faults;
+  }
+
 private:
   static std::vector<vpServoFault> drawn(std::uint64_t seed)
   {
@@ -149,7 +163,9 @@ private:
 
   std::string motion() const
   {
-    constexpr double lag = 0.3, wheels = 1.02; // s; wheels are 1.5 % too large
+    constexpr double lag = 0.3;     // s
+    constexpr double wheels = 0.02; // they are 1.5 % too large and too small, so that a turn moves it as well
+    constexpr double arm = 0.08;    // m, from the base's middle to a wheel
     const std::vector<vpFaultyWorld::Command> &told = m_world.commands();
     size_t first = 0, next = 0;
     for (double time = 0; time < m_world.world(); time += 0.01) {
@@ -159,9 +175,10 @@ private:
       }
       double most = 0;
       for (size_t i = first; i < next; ++i) {
-        most = std::max(most, std::abs(told[i].told.v));
+        most =
+            std::max(most, (1 + wheels) * std::abs(told[i].told.v) + wheels * arm * std::abs(told[i].told.w));
       }
-      if (speedAt(time) > wheels * most + 1e-4) {
+      if (speedAt(time) > most + 1e-4) {
         return "faster than commanded";
       }
     }

@@ -29,6 +29,8 @@ public:
     bool wasStranger = false; // in the frame before
     double logLikelihood = 0; // of the ray, whatever it is
     double strayed = 0;       // nats, that a stranger does not hang still
+
+    double logPeak() const { return logNormal(Eigen::Vector2d::Zero(), innovation.covariance); } // of a lamp
   };
 
   //! \param filter Its settings and odometry.

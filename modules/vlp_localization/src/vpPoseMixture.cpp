@@ -31,18 +31,37 @@ void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry
     place.filter.takeOdometry(odometry);
     place.logWeight += place.follow(frame);
   }
-  // A stranger hangs still as well: from frame to frame it shows what a lamp in its place would, if the robot
-  // moves as this place has it.
   for (size_t k = 0; k < frame.lamps.size(); ++k) {
-    double most = -1e300;
-    for (const vpPoseHypothesis &place : m_places) {
-      most = std::max(most, place.verdicts[k].accepted ? place.verdicts[k].logLikelihood : -1e300);
-    }
-    for (vpPoseHypothesis &place : m_places) {
-      const vpPoseHypothesis::Verdict &verdict = place.verdicts[k];
-      if (verdict.wasStranger && !verdict.accepted) {
-        place.logWeight += std::max(0.0, most - verdict.strayed - verdict.logLikelihood);
+    compare(k);
+  }
+}
+
+/*!
+  What a lamp of the frame is evidence of. Errors of rig and map are the same in every frame: how exactly a
+  place expects a lamp tells how many of them it has yielded to, not where the robot is. So places under the
+  same claims are as exact as the least of them. And a stranger hangs still as well: it shows what a lamp in
+  its place would, if the robot moves as its place has it.
+*/
+void vpPoseMixture::compare(size_t lamp)
+{
+  double asLamp = -1e300;
+  for (vpPoseHypothesis &place : m_places) {
+    const vpPoseHypothesis::Verdict &seen = place.verdicts[lamp];
+    double more = 0; // exact than the least
+    for (const vpPoseHypothesis &other : m_places) {
+      if (other.verdicts[lamp].accepted && other.filter.extraPlaceSigma() == place.filter.extraPlaceSigma()) {
+        more = std::max(more, seen.logPeak() - other.verdicts[lamp].logPeak());
       }
+    }
+    if (seen.accepted) {
+      place.logWeight -= more;
+      asLamp = std::max(asLamp, seen.logLikelihood - more);
+    }
+  }
+  for (vpPoseHypothesis &place : m_places) {
+    const vpPoseHypothesis::Verdict &seen = place.verdicts[lamp];
+    if (seen.wasStranger && !seen.accepted) {
+      place.logWeight += std::max(0.0, asLamp - seen.strayed - seen.logLikelihood);
     }
   }
 }

@@ -49,6 +49,7 @@ public:
               vpVlpLocation &location);
 
 private:
+  void compare(size_t lamp);
   void reduce(const vpVlpHypotheses &hypotheses);
   void tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpLocation &location) const;
   static bool isLost(const vpPoseHypothesis &place);

@@ -92,7 +92,10 @@ void vpServoSafety::addPicture(double known, const vpVlpLocation &location)
                     placeSigma(location.fix) < m_settings.sigmaSlow &&
                     yawSigma(location.fix) < m_settings.yawSlow;
   m_confirmed = good ? m_confirmed + 1 : 0;
-  m_relocated = location.relocated || location.fix.ambiguous;
+  m_undecided = location.relocated ? "the lamps show another place than the base's motion leads to, and no "
+                                     "third lamp bears it out"
+                : location.fix.ambiguous ? "the lamps may have been seen from either of two places"
+                                         : "";
 }
 
 void vpServoSafety::fail(const std::string &reason)
@@ -122,8 +125,8 @@ std::string vpServoSafety::unsafe(double now, const vpVlpFix &fix) const
     return "the yaw is uncertain by " + rounded(yawSigma(fix)) + " rad, at most " +
            vpNumberText(m_settings.yawStop) + " are allowed";
   }
-  if (m_relocated) {
-    return "the lamps show another place than the base's motion leads to, and no third lamp bears it out";
+  if (!m_undecided.empty()) {
+    return m_undecided;
   }
   if (!m_misdated.empty()) {
     return m_misdated;

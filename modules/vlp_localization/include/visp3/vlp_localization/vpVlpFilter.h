@@ -164,6 +164,7 @@ public:
   //! the next start() on: earlier estimates rest on the stated sigmas alone.
   void widenClaims();
   bool claimsWidened() const { return m_extraPlaceSigma > 0; }
+  double extraPlaceSigma() const { return m_extraPlaceSigma; } // m, of lamps' places: so far they are widened
 
   //! After start(): the velocity is what led here from \e before (m, of x and y in w; rad), \e since s ago.
   void comeFrom(const vpVlpFix &before, double since);

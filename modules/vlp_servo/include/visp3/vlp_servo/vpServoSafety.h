@@ -108,7 +108,7 @@ private:
   vpBaseLimits m_limits;
   bool m_needsPictures;
   vpBaseVelocity m_command;                         // the last one
-  bool m_relocated = false;                         // the latest picture's place is not confirmed
+  std::string m_undecided;                          // why the latest picture's place is not sure, or empty
   int m_confirmed = 0;                              // pictures in a row
   bool m_moving = false;                            // permitted to
   std::string m_misdated;                           // why the latest picture is not one of now, or empty
