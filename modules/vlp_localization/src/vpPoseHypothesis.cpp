@@ -257,16 +257,36 @@ void vpPoseHypothesis::learn(const vpLampFrame &frame)
     if (verdicts[k].accepted) {
       history.add(*lamp.lamp, *lamp.seen, verdicts[k].innovation, expectedExtent(frame, *lamp.lamp));
     } else if (m_changes[k].empty()) {
-      learnStranger(lamp, verdicts[k]);
+      learnStranger(frame, k);
     }
   }
 }
 
-void vpPoseHypothesis::learnStranger(const vpFrameLamp &lamp, Verdict &verdict)
+//! One that is not where it was is another one, where a lamp tells that it is not the robot that moved.
+void vpPoseHypothesis::learnStranger(const vpLampFrame &frame, size_t which)
 {
-  if (verdict.innovation.inFront) {
-    verdict.strayed = history.addStranger(*lamp.lamp, verdict.innovation);
+  Verdict &verdict = verdicts[which];
+  if (!verdict.innovation.inFront) {
+    return;
   }
+  const vpFrameLamp &lamp = frame.lamps[which];
+  verdict.strayed = history.addStranger(*lamp.lamp, verdict.innovation);
+  verdict.another =
+      accepted() > 0 && lamp.logPeak - verdict.strayed < std::log(m_hypotheses.stranger) + frame.logUniform;
+  if (verdict.another) {
+    history.setStranger(*lamp.lamp, true);
+    history.addStranger(*lamp.lamp, verdict.innovation);
+  }
+}
+
+double vpPoseHypothesis::asStill(size_t lamp, double asLamp) const
+{
+  const Verdict &seen = verdicts[lamp];
+  if (!seen.wasStranger || seen.accepted) {
+    return 0;
+  }
+  return seen.another ? std::log(m_hypotheses.stranger / m_hypotheses.staying)
+                      : std::max(0.0, asLamp - seen.strayed - seen.logLikelihood);
 }
 
 //! Of a lamp in the picture, seen from where the filter is.
@@ -290,7 +310,7 @@ vpPoseHypothesis vpPoseHypothesis::coasted(const vpLampFrame &frame) const
   other.m_changes.assign(frame.lamps.size(), misplaced);
   other.m_logLikelihood = other.weigh(frame, m_since);
   for (size_t k = 0; k < frame.lamps.size(); ++k) {
-    other.learnStranger(frame.lamps[k], other.verdicts[k]);
+    other.learnStranger(frame, k);
   }
   return other;
 }

@@ -29,6 +29,7 @@ public:
     bool wasStranger = false; // in the frame before
     double logLikelihood = 0; // of the ray, whatever it is
     double strayed = 0;       // nats, that a stranger does not hang still
+    bool another = false;     // stranger than in the frame before
 
     double logPeak() const { return logNormal(Eigen::Vector2d::Zero(), innovation.covariance); } // of a lamp
   };
@@ -59,6 +60,9 @@ public:
   //! Which lamps were accepted, and why others were not.
   void mark(const vpLampFrame &frame, std::vector<vpLampObservation> &observations) const;
   size_t accepted() const;
+  //! Of a lamp of the latest frame: log likelihood that it adds where it was a stranger before, and is one
+  //! still, had a lamp in its place \e asLamp.
+  double asStill(size_t lamp, double asLamp) const;
   double logLikelihood() const { return m_logLikelihood; } // of the latest frame
   //! What the frames since the start have told of the motion, nats.
   double information() const { return m_modes.information(); }
@@ -86,7 +90,7 @@ private:
   size_t mix(vpVlpFilter &mixed, size_t first, size_t end) const;
   void compare(const vpLampFrame &frame);
   void learn(const vpLampFrame &frame);
-  void learnStranger(const vpFrameLamp &lamp, Verdict &verdict);
+  void learnStranger(const vpLampFrame &frame, size_t which);
   vpLampExtent expectedExtent(const vpLampFrame &frame, const vpLamp &lamp) const;
 
   vpVlpHypotheses m_hypotheses;

@@ -59,10 +59,7 @@ void vpPoseMixture::compare(size_t lamp)
     }
   }
   for (vpPoseHypothesis &place : m_places) {
-    const vpPoseHypothesis::Verdict &seen = place.verdicts[lamp];
-    if (seen.wasStranger && !seen.accepted) {
-      place.logWeight += std::max(0.0, asLamp - seen.strayed - seen.logLikelihood);
-    }
+    place.logWeight += place.asStill(lamp, asLamp);
   }
 }
 
