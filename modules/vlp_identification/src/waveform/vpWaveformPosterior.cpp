@@ -100,9 +100,12 @@ bool vpWaveformFit::hidesDuty() const
 bool vpWaveformFit::repeats() const
 {
   static const double drift = 1.5;                // lines, of a pattern that repeats, over the profile
-  static const int longest = 8;                   // lines, of such a pattern, for each pulse
+  static const int longest = 8;                   // lines, of such a pattern
   const double periods = m_x(frequency) * m_line; // of a line
-  for (int pattern = 1; pattern <= longest * pulses(); ++pattern) {
+  // A pulse that is shorter than the exposure shows both its edges to one line: of two such, it takes twice
+  // as many lines to tell them all.
+  const bool isShort = m_settings.twoPulse && 0.5 * m_x(duty) < m_x(exposure) * m_x(frequency);
+  for (int pattern = 1; pattern <= (isShort ? 2 : 1) * longest; ++pattern) {
     if (std::abs(std::remainder(pattern * periods, 1)) * static_cast<double>(m_time.size()) < drift) {
       return true;
     }
