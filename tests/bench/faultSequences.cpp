@@ -62,6 +62,7 @@ void eachAlone(long drives)
                 drives - arrived, longest, 1000 * farthest);
   }
 }
+
 //! \return Exit code.
 int lostThenTorn(long sequences)
 {

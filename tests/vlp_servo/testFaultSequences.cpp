@@ -69,8 +69,9 @@ TEST(FaultSequences, AWrongFirstPoseIsNotKept)
   EXPECT_EQ(sequence.broken, "");
   EXPECT_NE(sequence.run.reason.find("either of two places"), std::string::npos) << sequence.run.reason;
 }
-// A part of each picture is what the robot saw 12 cm ago, and then pictures are whole again: all four lamps
-// speak for the right place, one for the wrong one, which expects it the more exactly.
+
+// A part of each picture is what the robot saw before pictures were lost, and then pictures are whole again:
+// all four lamps speak for the right place, one for the wrong one, which expects it the more exactly.
 TEST(FaultSequences, APlaceThatOneLampSpeaksForIsNotKept)
 {
   std::mt19937_64 random(1);

@@ -47,16 +47,17 @@ void vpPoseMixture::compare(size_t lamp)
   double asLamp = -1e300;
   for (vpPoseHypothesis &place : m_places) {
     const vpPoseHypothesis::Verdict &seen = place.verdicts[lamp];
+    if (!seen.accepted) {
+      continue;
+    }
     double more = 0; // exact than the least
     for (const vpPoseHypothesis &other : m_places) {
       if (other.verdicts[lamp].accepted && other.filter.extraPlaceSigma() == place.filter.extraPlaceSigma()) {
         more = std::max(more, seen.logPeak() - other.verdicts[lamp].logPeak());
       }
     }
-    if (seen.accepted) {
-      place.logWeight -= more;
-      asLamp = std::max(asLamp, seen.logLikelihood - more);
-    }
+    place.logWeight -= more;
+    asLamp = std::max(asLamp, seen.logLikelihood - more);
   }
   for (vpPoseHypothesis &place : m_places) {
     place.logWeight += place.asStill(lamp, asLamp);
