@@ -51,7 +51,7 @@ cv::Rect grownAround(const cv::Rect &window, const std::vector<vpLedRoi> &rois, 
 std::vector<vpLedRoi> vpLedRoiDetector::detect(const cv::Mat_<unsigned char> &lines, const cv::Rect &window,
                                                const std::vector<cv::Rect> &known) const
 {
-  static const int mostRounds = 3; // after which the whole picture is looked at
+  static const int mostRounds = 10; // each about twice as far; then the whole picture is looked at
   const cv::Rect picture(0, 0, lines.cols, lines.rows);
   cv::Rect looked = window & picture;
   std::vector<vpLedRoi> rois;
