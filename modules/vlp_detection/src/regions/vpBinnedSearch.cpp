@@ -13,7 +13,7 @@ BEGIN_VISP_NAMESPACE
 
 std::vector<int> vpBinnedSearch::widths(const vpBackground &dark)
 {
-  static const double calm = 4.5; // grey levels
+  static const double calm = 3.2; // grey levels: then four deviations are a twentieth of white
   static const int widest = 16;
   std::vector<int> widths;
   for (int width = 1; width < widest && dark.noise > calm * std::sqrt(width);) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <visp3/vlp_core/vpBrighter.h>
 
@@ -203,9 +204,13 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
       const std::vector<vpLitRun> runs =
           connected(light.runsAbove(level), light.bands(), seed.box - cv::Point(window.x, 0), reach);
       const std::vector<vpLitRun> outer = outermost(runs, light.bands().size());
+      vpLedRoi region = regionOf(outer, light.bands(), window.x, seed.level);
+      if (2 * (region.box & seed.box).area() < seed.box.area()) {
+        break; // one bright stripe has as sharp a rim as a lamp
+      }
       middles.push_back(middleOf(runs, light.bands(), window.x));
       levels.push_back(endsOf(outer, light.bands(), level, window.tl()));
-      regions.push_back(regionOf(outer, light.bands(), window.x, seed.level));
+      regions.push_back(std::move(region));
     }
     if (regions.empty() || regions.front().chords.empty()) {
       return std::nullopt;
