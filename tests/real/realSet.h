@@ -6,6 +6,7 @@
 #define realSet_h
 
 #include <cstdlib>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <set>
@@ -103,27 +104,43 @@ public:
     return map;
   }
 
-  //! Every lamp of the picture has its right id, and no region has another one. \return how many are right.
-  size_t expectIds(const YAML::Node &image, const std::vector<vpLampObservation> &seen, double within) const
+  //! Regions that have an id, and those of them that are the lamp of that id.
+  struct Ids {
+    size_t named = 0, right = 0;
+  };
+
+  //! \param within px, of the middle that is listed. \param altered Where this lies in an altered picture.
+  Ids idsOf(const YAML::Node &image, const std::vector<vpLampObservation> &seen, double within,
+            const std::function<Eigen::Vector2d(const Eigen::Vector2d &)> &altered) const
   {
-    size_t right = 0, named = 0;
+    Ids ids;
     for (const vpLampObservation &lamp : seen) {
-      named += lamp.id.empty() ? 0 : 1;
+      ids.named += lamp.id.empty() ? 0 : 1;
     }
     for (const auto &listed : image["lamps_px"]) {
       const auto id = listed.first.as<std::string>();
       if (id == doesNotBlink) {
         continue;
       }
-      const Eigen::Vector2d centre(listed.second[0].as<double>(), listed.second[1].as<double>());
+      const Eigen::Vector2d centre =
+          altered(Eigen::Vector2d(listed.second[0].as<double>(), listed.second[1].as<double>()));
       for (const vpLampObservation &lamp : seen) {
         const bool same = lamp.id == id || lamp.id == "L" + id; // lumia-room lists lamps without their L
-        right += same && (lamp.outline.centre - centre).norm() < within ? 1 : 0;
+        ids.right += same && (lamp.outline.centre - centre).norm() < within ? 1 : 0;
       }
     }
-    EXPECT_EQ(right, lampsIn(image)) << image["file"];
-    EXPECT_EQ(named, right) << image["file"] << ": a region has an id that is not its own";
-    return right;
+    return ids;
+  }
+
+  //! Every lamp of the picture has its right id, and no region has another one.
+  void expectIds(
+      const YAML::Node &image, const std::vector<vpLampObservation> &seen, double within,
+      const std::function<Eigen::Vector2d(const Eigen::Vector2d &)> &altered =
+          [](const Eigen::Vector2d &centre) { return centre; }) const
+  {
+    const Ids ids = idsOf(image, seen, within, altered);
+    EXPECT_EQ(ids.right, lampsIn(image)) << image["file"];
+    EXPECT_EQ(ids.named, ids.right) << image["file"] << ": a region has an id that is not its own";
   }
 
 private:

@@ -6,6 +6,7 @@
 // check.
 
 #include "realSet.h"
+#include "vpAlteration.h"
 
 #include <cmath>
 
@@ -90,6 +91,24 @@ TEST(Chandelier, EveryIdWhateverExposureIsClaimed)
 {
   VLP_REAL_SET(set, "chandelier");
   expectAllIds(set, 30);
+}
+
+TEST(AlteredPictures, EveryIdAsOtherCamerasWouldHaveTakenThem)
+{
+  for (const auto &[name, within] : {std::make_pair("ub300", 3.0), std::make_pair("lumia-floor", 30.0),
+                                     std::make_pair("lumia-floor-2", 30.0)}) {
+    VLP_REAL_SET(set, name);
+    for (const YAML::Node &image : set.images()) {
+      const vpVlpFrame frame = set.frame(image);
+      for (const vpAlteration &alteration : vpAlterations()) {
+        SCOPED_TRACE(alteration.name);
+        const vpVlpFrame other{alteration.applied(frame.I), 0, frame.name};
+        vpVlpLocalizer localizer(alteration.applied(set.rig(image, frame, 30e-6), other.I), set.map());
+        set.expectIds(image, localizer.process(other).observations, within,
+                      [&](const Eigen::Vector2d &middle) { return alteration.applied(middle, other.I); });
+      }
+    }
+  }
 }
 
 //! Picture with a recorded position, its camera at the base: the pose's error in metres and degrees.

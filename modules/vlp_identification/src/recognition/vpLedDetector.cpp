@@ -221,7 +221,8 @@ bool vpLedDetector::observe(const vpLinePicture &picture, const std::vector<vpLe
   return m_nb_objects > 0;
 }
 
-//! Of the light inside a region's outline, the share that blinks as was read of it.
+//! Of the light inside a region's outline, the share that blinks as was read of it, as far as its duty is
+//! known: a wrong wave explains less.
 double vpLedDetector::blinkingShare(const vpLinePicture &picture, const Region &region) const
 {
   if (region.fit.outline.shape == vpLampOutline::Shape::region) {
@@ -231,12 +232,22 @@ double vpLedDetector::blinkingShare(const vpLinePicture &picture, const Region &
   const cv::Rect inside(cv::Point(cvFloor(box(0)), cvFloor(box(1))),
                         cv::Point(cvCeil(box(2)) + 1, cvCeil(box(3)) + 1)),
       seen = inside & cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
-  const std::vector<float> lit = vpLitShareOf(region.lamp.features, m_timing);
   static const double deep = 0.5; // of stripes: where no line is dark, none tells whose light is on it
-  if (lit.empty() || seen.empty() || region.lamp.features.modulation < deep) {
+  vpStripeFeatures wave = region.lamp.features;
+  if (std::isnan(wave.phase) || seen.empty() || wave.modulation < deep) {
     return 1;
   }
-  return vpBlinkingLight::share(picture.grey, lit, seen);
+  double share = 0;
+  for (const double sigmas : {0, -1, 1}) {
+    if (share > recognizer.leastBlinking) {
+      break;
+    }
+    wave.duty = std::clamp(region.lamp.features.duty + sigmas * region.lamp.features.dutySigma, 0.0, 1.0);
+    wave.phase =
+        region.lamp.features.phase + 0.5 * (wave.duty - region.lamp.features.duty); // its middle stays
+    share = std::max(share, vpBlinkingLight::share(picture.grey, vpLitShareOf(wave, m_timing), seen));
+  }
+  return share;
 }
 
 void vpLedDetector::recognise(std::vector<Region> &regions)
@@ -291,8 +302,10 @@ vpStripeFeatures vpLedDetector::stripesOf(const vpLinePicture &picture, const vp
     return features;
   }
   const vpStripeFeatures other = agreedStripes(picture, fit, roi);
-  const bool better =
-      features.signal == vpStripeFeatures::Signal::unmodulated || other.misfit < features.misfit;
+  // Of few lines that are hardly known, any wave explains all.
+  const bool finer = !tells || other.frequencySigma < features.frequencySigma,
+             better = features.signal == vpStripeFeatures::Signal::unmodulated ||
+                      (finer && other.misfit < features.misfit);
   return vpLedIdEvidence::tells(other) && better ? other : features;
 }
 

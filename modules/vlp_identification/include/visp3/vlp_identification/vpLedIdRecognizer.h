@@ -62,7 +62,7 @@ public:
   double spreadGate = 1.2;         // standard deviations, on the frequency's range under an unstated duty
   double shapeGate = 4;            // standard deviations, on duty and phase difference
   double leastShape = 1e-3;        // probability of its shape below which a whole outline is another lamp's
-  double leastBlinking = 2. / 3;   // of the light in an outline, that its lamp's stripes have to explain
+  double leastBlinking = 0.6;      // of the light in an outline, that its lamp's stripes have to explain
   double minConfidence = 0.99;     // probability below which no id is given
   double maxFrequencySigma = 0.03; // share of the frequency: less certain stripes are recognised as nothing
   double maxSpread = 4;            // frequencySigma over that bound, above which there is no id
