@@ -119,22 +119,19 @@ bool mayBlinkAlike(const vpLampObservation &a, const vpLampObservation &b)
   return std::isnan(middles) || std::abs(std::remainder(middles, 1)) < most + sigmas * unknown;
 }
 
-//! Whether the middle of a lamp lies in another one's box.
-bool middleIsIn(const vpLampObservation &one, const vpLampObservation &other)
-{
-  const Eigen::Vector4d box = other.outline.box();
-  const Eigen::Vector2d &middle = one.outline.centre;
-  return box(0) < middle.x() && middle.x() < box(2) && box(1) < middle.y() && middle.y() < box(3);
-}
-
-//! Whether a region shows what another one shows better: both blink alike, and no lamp hides the middle of
-//! another. A lamp and its mirror image may touch. What shows the stripes worse is but a scrap of it.
+//! Whether a region shows what another one shows better: both blink alike, and no two lamps overlap. Of a
+//! lamp's scraps and mirror images the stripes tell less; of those that tell as much the middle decides.
 bool isDoubleOf(const vpLampObservation &one, const vpLampObservation &other)
 {
-  static const double worse = 2; // times the standard deviation of the frequency
-  return (middleIsIn(one, other) || middleIsIn(other, one)) && tells(one) && tells(other) &&
-         one.covariance.trace() > other.covariance.trace() &&
-         other.features.frequencySigma < worse * one.features.frequencySigma && mayBlinkAlike(one, other);
+  static const double clearly = 2; // times the standard deviation of the frequency
+  const Eigen::Vector4d a = one.outline.box(), b = other.outline.box();
+  const bool overlap =
+      std::max(a(0), b(0)) < std::min(a(2), b(2)) && std::max(a(1), b(1)) < std::min(a(3), b(3));
+  if (!overlap || !tells(one) || !tells(other) || !mayBlinkAlike(one, other)) {
+    return false;
+  }
+  const double less = one.features.frequencySigma / other.features.frequencySigma;
+  return less > clearly || (less > 1 / clearly && one.covariance.trace() > other.covariance.trace());
 }
 } // namespace
 
