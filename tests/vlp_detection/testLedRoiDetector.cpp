@@ -4,6 +4,7 @@
  */
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -425,13 +426,21 @@ TEST(LedRoiDetector, LampInClippedNoise)
     }
 }
 
-// Three standard deviations of a pixel's noise above the background: only many pixels together show it.
+// Three standard deviations of a pixel's noise above the background, or 15 grey levels whatever the noise:
+// only many pixels together show them.
 TEST(LedRoiDetector, LampsThatSinglePixelsHardlyShow)
 {
-  for (const double noise : {8, 16, 40}) {
+  for (const auto &[noise, amplitude] : {std::make_pair(8., 24.),
+                                         {16., 48.},
+                                         {40., 120.},
+                                         {3.5, 15.},
+                                         {4., 15.},
+                                         {4.4, 15.},
+                                         {5., 15.},
+                                         {6., 15.}}) {
     int found = 0, strangers = 0;
     for (const double phase : phases) {
-      vpLampPicture picture = alone(disc(0, 0, 40, 3 * noise, 16, 0.5, phase));
+      vpLampPicture picture = alone(disc(0, 0, 40, amplitude, 16, 0.5, phase));
       picture.noise = noise;
       picture.background = 60;
       const cv::Rect lamp = litBy(picture, picture.lamps.front()).most;
