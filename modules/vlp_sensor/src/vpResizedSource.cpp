@@ -23,7 +23,10 @@ bool vpResizedSource::next(vpVlpFrame &frame)
   const vpImage<unsigned char> &from = m_taken.I;
   if (m_resize.method == vpPictureResize::Method::none || from.getWidth() != m_resize.sourceWidth ||
       from.getHeight() != m_resize.sourceHeight) {
-    std::swap(frame, m_taken);
+    swap(frame.I, m_taken.I); // in ViSP 3.5 std::swap would leave both pictures without an owner
+    std::swap(frame.I.display, m_taken.I.display); // stays
+    frame.timestamp = m_taken.timestamp;
+    frame.name = m_taken.name;
     return true;
   }
   frame.I.resize(m_height, m_width);
