@@ -42,11 +42,6 @@ public:
   const std::vector<vpStripeStarts::Sinusoid> &candidates();
   //! Whether no more shows than where one stripe begins, ends, or both.
   bool isOneStripe() const { return !m_edges.empty() && m_edges.size() < 3 && !m_gap; }
-  //! Whether the edges of the stripes are those of one pulse a period, or of two.
-  bool edgesAgree(bool twoPulse) const
-  {
-    return twoPulse ? vpStripeStarts::pairsOfPulses(m_edges).has_value() : m_pulses.has_value();
-  }
 
   //! \param explained Misfit of the best fit so far, with another envelope.
   std::optional<vpWaveformFit> onePulse(double explained = 1);

@@ -172,6 +172,16 @@ void takeCoded(vpStripeFeatures &features, const std::optional<vpWordSearch::Fou
   }
 }
 
+//! Whether the edges that stripes show under the envelope that was fitted are those of its pulses.
+bool edgesAgree(const vpStripeProfile &profile, const vpWaveformFit &fit, bool twoPulse)
+{
+  const Eigen::ArrayXd light = fit.envelope();
+  const std::vector<vpStripeStarts::Edge> edges =
+      vpStripeStarts::edges(profile, {light.data(), light.data() + light.size()});
+  return twoPulse ? vpStripeStarts::pairsOfPulses(edges).has_value()
+                  : vpStripeStarts::pulses(edges).has_value();
+}
+
 //! Where stripes are too few or too blurred for what was fitted to mean much.
 void widen(vpStripeFeatures &features, const vpStripeProfile &profile, bool edgesAgree)
 {
@@ -234,19 +244,18 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   features.misfit = 1; // where no pulses explain anything
   const auto [earliest, latest] = std::minmax_element(profile.time.begin(), profile.time.end());
   const double middle = 0.5 * (*earliest + *latest);
-  vpPulseSearch *start = &byAll;
-  std::optional<vpPulseSearch> evenly, byPeriod, byStripes;
-  std::optional<vpWaveformFit> pwm = byAll.onePulse();
+  std::optional<vpPulseSearch> byPeriod;
+  std::optional<vpWaveformFit> pwm = byAll.onePulse(), two;
   const auto explained = [&pwm] { return pwm && pwm->misfit() < vpPulseSearch::allExplained; };
-  const auto alsoFrom = [&](vpPulseSearch &search) {
+  const auto alsoFrom = [&pwm](vpPulseSearch &search) {
     std::optional<vpWaveformFit> other = search.onePulse(pwm ? pwm->misfit() : 1);
     if (other && (!pwm || other->criterion() < pwm->criterion())) {
       pwm = std::move(other);
-      start = &search;
     }
   };
   if (order > 0 && !profile.isClipped()) { // beyond the end of the grey scale nothing tells an even lamp
-    alsoFrom(evenly.emplace(byAll.evenly(explained(), *this)));
+    vpPulseSearch evenly = byAll.evenly(explained(), *this);
+    alsoFrom(evenly);
   }
   if (!explained() && !byAll.candidates().empty()) {
     // An emitter of any pattern is as bright as the brightest that a period shows.
@@ -258,9 +267,9 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
     alsoFrom(*byPeriod);
   }
   if (!explained() && peaks.size() > 1) {
-    byStripes.emplace(profile, vpStripeStarts::envelopeOfStripes(profile, peaks), 0, *this);
-    byStripes->settings.envelopeUnknowns = 2 * static_cast<int>(peaks.size());
-    alsoFrom(*byStripes);
+    vpPulseSearch byStripes(profile, vpStripeStarts::envelopeOfStripes(profile, peaks), 0, *this);
+    byStripes.settings.envelopeUnknowns = 2 * static_cast<int>(peaks.size());
+    alsoFrom(byStripes);
   }
   if (pwm) {
     pwm->integrate();
@@ -273,23 +282,22 @@ vpStripeFeatures vpStripeAnalyzer::analyze(const vpStripeProfile &profile) const
   // A second pulse explains a little of what blur and tone curve do to one, too.
   static const double wellExplained = 0.003, far = 0.05, muchBetter = 0.2, better = 0.5;
   if (searchTwoPulses && (!pwm || pwm->misfit() > wellExplained)) {
-    std::optional<vpWaveformFit> two = byAll.twoPulses();
-    vpPulseSearch *startOfTwo = &byAll;
+    two = byAll.twoPulses();
     if (byPeriod && !(two && two->misfit() < vpPulseSearch::allExplained)) {
       std::optional<vpWaveformFit> other = byPeriod->twoPulses();
       if (other && (!two || other->cost() < two->cost())) {
         two = std::move(other);
-        startOfTwo = &*byPeriod;
       }
     }
     if (two && two->misfit() < maxMisfit && (!pwm || two->criterion() < pwm->criterion()) &&
         (!pwm || two->misfit() < (pwm->misfit() > far ? better : muchBetter) * pwm->misfit())) {
       two->integrate();
       take(features, *two, true, middle);
-      start = startOfTwo;
     }
   }
-  widen(features, profile, start->edgesAgree(features.signal == vpStripeFeatures::Signal::twoPulse));
+  const bool twoPulse = features.signal == vpStripeFeatures::Signal::twoPulse;
+  const std::optional<vpWaveformFit> &fit = twoPulse ? two : pwm;
+  widen(features, profile, fit && edgesAgree(profile, *fit, twoPulse));
   static const double certain = 0.04; // misfit from which a word may explain the stripes better
   if (!(features.misfit < certain)) {
     const std::optional<vpWordSearch::Found> word =

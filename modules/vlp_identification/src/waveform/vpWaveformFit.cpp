@@ -286,7 +286,6 @@ double vpWaveformFit::leastOffset(double share) const
   return -1 - 0.02 * std::abs(share) * m_given(m_given.size() / 2);
 }
 
-//! At each line, as it was fitted, grey levels.
 Eigen::ArrayXd vpWaveformFit::envelope() const
 {
   return (m_powers * Eigen::Map<const Eigen::VectorXd>(m_coefficient.data() + 1, m_bends)).array();

@@ -112,6 +112,8 @@ public:
   }
   //! Share of the stripes' power left unexplained, beyond what noise explains.
   double misfit() const;
+  //! How bright the lamp is at each line while it is lit, as it was fitted, grey levels.
+  Eigen::ArrayXd envelope() const;
 
 private:
   static constexpr int mostLinear = 6;
@@ -158,7 +160,6 @@ private:
   void normalEquations(Matrix &H, Vector &g);
   void descend(int iterations);
   bool bendEnvelope();
-  Eigen::ArrayXd envelope() const;
   Eigen::ArrayXd residuals() const;
   bool isFree(int parameter) const
   {
