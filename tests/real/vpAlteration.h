@@ -23,7 +23,7 @@ using namespace VISP_NAMESPACE_NAME;
   255)^gamma, noise, rounding to 8 bits, JPEG.
 */
 struct vpAlteration {
-  std::string name = "none";
+  std::string name = "as they are";
   double scale = 1, gain = 1, gamma = 1;
   double noise = 0; // grey levels, standard deviation; black and white clip it
   int jpeg = 0;     // quality; 0: none

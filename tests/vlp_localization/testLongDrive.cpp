@@ -11,10 +11,10 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <malloc.h>
 #include <unistd.h>
 #include <visp3/vlp_localization/vpVlpLocalizer.h>
 
+#include "common/vpAllocatedMemory.h"
 #include "common/vpSeenLamps.h"
 
 namespace
@@ -50,12 +50,6 @@ double resident()
   file >> size >> pages;
   return pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
-
-//! MiB that are allocated; 0 under a sanitizer, which has a heap of its own.
-double allocated()
-{
-  return static_cast<double>(mallinfo2().uordblks) / (1 << 20);
-}
 } // namespace
 
 TEST(LongDrive, MemoryAndErrorStayAsTheyAre)
@@ -82,13 +76,13 @@ TEST(LongDrive, MemoryAndErrorStayAsTheyAre)
     }
     if (residentBefore == 0 && t > 2 * minute) { // all that happens has happened once
       residentBefore = resident();
-      allocatedBefore = allocated();
+      allocatedBefore = vpAllocatedMemory();
     }
   }
   EXPECT_GT(static_cast<double>(poses), 0.99 * static_cast<double>(frames));
   EXPECT_LT(early, 0.01);
   EXPECT_LT(late, 0.01);
-  EXPECT_LT(allocated() - allocatedBefore, 0.1);
+  EXPECT_LT(vpAllocatedMemory() - allocatedBefore, 0.1);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // which keep what was freed
   EXPECT_LT(resident() - residentBefore, 1);
 #endif

@@ -6,11 +6,10 @@
 #include <string>
 #include <utility>
 
-#include <malloc.h>
-
 #include <gtest/gtest.h>
 #include <visp3/vlp_sensor/vpResizedSource.h>
 
+#include "common/vpAllocatedMemory.h"
 #include "common/vpUpwardRig.h"
 
 #ifdef ENABLE_VISP_NAMESPACE
@@ -38,13 +37,6 @@ private:
   unsigned int m_width, m_height;
   int m_number = 0;
 };
-
-//! MiB that are allocated; 0 under a sanitizer, which has a heap of its own and finds leaks itself.
-double allocated()
-{
-  const struct mallinfo2 heap = mallinfo2();
-  return static_cast<double>(heap.uordblks + heap.hblkhd) / (1 << 20);
-}
 } // namespace
 
 // Once with pictures that a frame keeps, once with such as are taken from it, as a feed does it.
@@ -53,7 +45,7 @@ TEST(ResizedSource, PicturesThatAreHandedOnAreFreed)
   for (const bool taken : {false, true}) {
     const vpVlpRig rig = vpUpwardRig(800, 600);
     vpResizedSource source(std::make_unique<Numbers>(800, 600), rig);
-    const double before = allocated();
+    const double before = vpAllocatedMemory();
     for (int k = 0; k < 100; ++k) {
       vpVlpFrame frame;
       ASSERT_TRUE(source.next(frame));
@@ -64,7 +56,7 @@ TEST(ResizedSource, PicturesThatAreHandedOnAreFreed)
         std::make_shared<vpImage<unsigned char>>(std::move(frame.I));
       }
     }
-    EXPECT_LT(allocated() - before, 5) << taken; // of 46
+    EXPECT_LT(vpAllocatedMemory() - before, 5) << taken; // of 46
   }
 }
 

@@ -2,17 +2,19 @@
  * visp_vlp: visible light positioning for ViSP.
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
-// vpLedDetector::profile(): what was read of a lamp, for a person to look at.
+// What was read of a lamp beside the light inside its outline: as a share, and for a person to look at.
 
 #include <visp3/vlp_identification/vpLedDetector.h>
 
 #include <visp3/vlp_core/vpBrighter.h>
+#include <visp3/vlp_detection/vpBlinkingLight.h>
 #include <visp3/vlp_identification/vpLitShare.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "vpSeenRegion.h"
 #include "vpTransposed.h"
 
 BEGIN_VISP_NAMESPACE
@@ -78,6 +80,34 @@ double explained(const vpStripeProfile &profile, const vpStripeFeatures &feature
   return common > 0 && variances > 0 ? common * common / variances : 0;
 }
 } // namespace
+
+/*!
+  Of the light inside a region's outline, the share that blinks as was read of it, as far as its duty is
+  known: a wrong wave explains less.
+*/
+double vpLedDetector::blinkingShare(const vpLinePicture &picture, const Region &region) const
+{
+  static const double deep = 0.5; // of stripes: where no line is dark, none tells whose light is on it
+  const vpStripeFeatures &read = region.lamp.features;
+  if (region.fit.outline.shape == vpLampOutline::Shape::region) {
+    return 0;
+  }
+  const cv::Rect box = boxOf(region.fit.outline, picture.grey.size());
+  if (std::isnan(read.phase) || box.empty() || read.modulation < deep) {
+    return 1;
+  }
+  double share = 0;
+  vpStripeFeatures wave = read;
+  for (const double sigmas : {0, -1, 1}) {
+    if (share > recognizer.leastBlinking) {
+      break;
+    }
+    wave.duty = std::clamp(read.duty + sigmas * read.dutySigma, 0.0, 1.0);
+    wave.phase = read.phase + 0.5 * (wave.duty - read.duty); // the pulse's middle stays
+    share = std::max(share, vpBlinkingLight::share(picture.grey, vpLitShareOf(wave, m_timing), box));
+  }
+  return share;
+}
 
 vpStripeProfile vpLedDetector::profile(const vpImage<unsigned char> &I, const vpLampObservation &lamp) const
 {

@@ -11,9 +11,7 @@
 
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpRect.h>
-#include <visp3/vlp_detection/vpBlinkingLight.h>
 #include <visp3/vlp_identification/vpLedIdEvidence.h>
-#include <visp3/vlp_identification/vpLitShare.h>
 
 #include "stripes/vpLampReacquisition.h"
 #include "stripes/vpSteadyLight.h"
@@ -219,35 +217,6 @@ bool vpLedDetector::observe(const vpLinePicture &picture, const std::vector<vpLe
   }
   m_nb_objects = m_observations.size();
   return m_nb_objects > 0;
-}
-
-//! Of the light inside a region's outline, the share that blinks as was read of it, as far as its duty is
-//! known: a wrong wave explains less.
-double vpLedDetector::blinkingShare(const vpLinePicture &picture, const Region &region) const
-{
-  if (region.fit.outline.shape == vpLampOutline::Shape::region) {
-    return 0;
-  }
-  const Eigen::Vector4d box = region.fit.outline.box();
-  const cv::Rect inside(cv::Point(cvFloor(box(0)), cvFloor(box(1))),
-                        cv::Point(cvCeil(box(2)) + 1, cvCeil(box(3)) + 1)),
-      seen = inside & cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
-  static const double deep = 0.5; // of stripes: where no line is dark, none tells whose light is on it
-  vpStripeFeatures wave = region.lamp.features;
-  if (std::isnan(wave.phase) || seen.empty() || wave.modulation < deep) {
-    return 1;
-  }
-  double share = 0;
-  for (const double sigmas : {0, -1, 1}) {
-    if (share > recognizer.leastBlinking) {
-      break;
-    }
-    wave.duty = std::clamp(region.lamp.features.duty + sigmas * region.lamp.features.dutySigma, 0.0, 1.0);
-    wave.phase =
-        region.lamp.features.phase + 0.5 * (wave.duty - region.lamp.features.duty); // its middle stays
-    share = std::max(share, vpBlinkingLight::share(picture.grey, vpLitShareOf(wave, m_timing), seen));
-  }
-  return share;
 }
 
 void vpLedDetector::recognise(std::vector<Region> &regions)
