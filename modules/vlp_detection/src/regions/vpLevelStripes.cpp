@@ -67,7 +67,9 @@ void scan(const unsigned char *row, int y, int first, int last, unsigned char gr
 
 std::vector<Run> runsAbove(const cv::Mat_<unsigned char> &lines, double level, const vpLevelStripes *below)
 {
+  static const size_t pixels = 64; // of a picture, for a run each
   std::vector<Run> runs;
+  runs.reserve(below != nullptr ? below->runs.size() : lines.total() / pixels);
   const auto grey =
       static_cast<unsigned char>(std::clamp(std::floor(level), 0.0, 255.0)); // above both or neither
   if (below != nullptr) {

@@ -51,10 +51,17 @@ bool tells(const vpLampObservation &lamp)
   return vpLedIdEvidence::tells(lamp.features);
 }
 
-//! Whether a region blinks, but too few of its stripes are seen to say how.
+//! Whether pulses explain a region's stripes, which are too few to say how often they come.
 bool blinksSomehow(const vpLampObservation &lamp)
 {
-  return lamp.features.signal != vpStripeFeatures::Signal::unmodulated && !tells(lamp);
+  return !std::isnan(lamp.features.phase) && !tells(lamp);
+}
+
+//! Whether a region may be lamps that blink in different ways: two stripes that no pulses explain are shades.
+bool mayBeSeveral(const vpLampObservation &lamp)
+{
+  const bool unexplained = lamp.features.signal == vpStripeFeatures::Signal::coded;
+  return !tells(lamp) && lamp.features.stripes >= (unexplained ? vpPatchwork::fewestStripes : 2);
 }
 
 //! Whether an outline is that of a whole lamp: no part of a lamp is an evenly lit ellipse.
@@ -167,12 +174,12 @@ void vpLedDetector::takeApart(const vpLinePicture &picture, std::vector<Region> 
 {
   for (size_t i = regions.size(); i-- > 0;) {
     const vpLedRoi roi = regions[i].roi;
-    double darkest = 0;
-    cv::minMaxLoc(picture.grey(roi.box), &darkest);
     for (const double times : {2.0, 4.0}) {
-      if (regions[i].lamp.features.stripes < 2 || tells(regions[i].lamp) || isWhole(regions[i].fit)) {
+      if (!mayBeSeveral(regions[i].lamp) || isWhole(regions[i].fit)) {
         break; // steady, one lamp, or taken apart already
       }
+      double darkest = 0;
+      cv::minMaxLoc(picture.grey(roi.box), &darkest);
       vpLedRoiDetector bright = roiDetector;
       bright.minContrast = times * (roi.level - darkest);
       std::vector<Region> parts;
