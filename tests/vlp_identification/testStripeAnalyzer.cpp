@@ -457,7 +457,7 @@ TEST(StripeAnalyzer, StripesThatNearlyRepeatWithTheLines)
 
 //! Two pulses every 2.5 and every 2.4 lines: five and twelve lines that nearly repeat, and both pulses may be
 //! longer or shorter along a ridge.
-TEST(StripeAnalyzer, TwoPulsesThatNearlyRepeatWithTheLines)
+TEST(StripeStatistics, TwoPulsesThatNearlyRepeatWithTheLines)
 {
   const double line = 40e-6;
   std::mt19937 random(3);

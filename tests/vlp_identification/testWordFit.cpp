@@ -210,7 +210,7 @@ TEST(WordFit, WordsUnlikeAnyPulses)
   }
 }
 
-TEST(WordFit, Statistics)
+TEST(WordFitStatistics, KnownAndUnknownFormats)
 {
   static const int trials = 30, blindTrials = 10;
   for (bool known : {true, false}) {
