@@ -59,6 +59,7 @@ const vpLampObservation *find(const vpLedDetector &detector, const std::string &
   }
   return nullptr;
 }
+} // namespace
 
 TEST(LedDetector, NamesKnownLampsAndReportsAnUnknownOne)
 {
@@ -285,42 +286,6 @@ TEST(LedDetector, ClippedStripesAreAsUncertainAsTheyAre)
   EXPECT_LT(std::sqrt(duty / count), 2);
 }
 
-//! Both ends of the grey scale clip noise. What black clips makes dark lines brighter, and what white clips
-//! makes lit lines darker; no pulse is shorter or longer for it.
-TEST(LedDetector, NoiseThatTheGreyScaleClipsLeavesDutiesAsTheyAre)
-{
-  for (const double amplitude : {150.0, 190.0}) {
-    double squares = 0, sum = 0; // of normalised errors
-    int count = 0;
-    for (int phase = 0; phase < 40; ++phase) {
-      vpLampPicture painted = fourLampPicture();
-      painted.background = 3;
-      painted.noise = 25;
-      painted.seed = static_cast<unsigned int>(phase + 1);
-      painted.lamps.resize(1);
-      painted.lamps[0].centre = {200.3, 160.6};
-      painted.lamps[0].a = painted.lamps[0].b = 75;
-      painted.lamps[0].amplitude = amplitude;
-      painted.lamps[0].frequency = 5000 + 31.7 * phase;
-      painted.lamps[0].phase = phase / 40.0;
-      painted.lamps[0].pwm(0.3);
-      vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
-      detector.detect(painted.render());
-      ASSERT_FALSE(detector.observations().empty());
-      const vpStripeFeatures &seen = detector.observations()[0].features;
-      EXPECT_EQ(seen.dutyClipped, 0) << amplitude;
-      const double off = (seen.duty - 0.3) / seen.dutySigma;
-      ASSERT_TRUE(std::isfinite(off)) << amplitude;
-      squares += off * off;
-      sum += off;
-      ++count;
-    }
-    const double rms = std::sqrt(squares / count);
-    EXPECT_LT(rms, 1.5) << amplitude;
-    EXPECT_LT(std::abs(sum) / count, 3 * rms / std::sqrt(count)) << amplitude; // no bias
-  }
-}
-
 //! Two periods of two pulses have the edges of four: more than enough for a frequency.
 TEST(LedDetector, TwoPeriodsOfTwoPulsesTellTheirFrequency)
 {
@@ -344,34 +309,6 @@ TEST(LedDetector, TwoPeriodsOfTwoPulsesTellTheirFrequency)
     EXPECT_EQ(detector.observations()[0].id, two.lamps[0].id) << phase;
     EXPECT_NEAR(detector.observations()[0].features.frequency, 330, 1) << phase;
   }
-}
-
-//! Their region holds both, and what is found in its parts may be the same lamp.
-// A wave of twice the frequency explains two short pulses as well, where the lamp may be dark in between.
-TEST(LedDetector, NoiseMakesNoFrequencyThatIsNone)
-{
-  int told = 0;
-  for (unsigned int seed = 1; seed <= 60; ++seed) {
-    vpLampPicture noisy = fourLampPicture();
-    noisy.width = noisy.height = 200;
-    noisy.noise = 40;
-    noisy.seed = seed;
-    const double frequency = 2.07 / (146 * noisy.rowTime);
-    vpPaintedLamp two = lampAt(99.5, 99.5, frequency, 0.2);
-    two.a = two.b = 73;
-    two.phase = 0.0167 * seed;
-    noisy.lamps = {two};
-    vpLedDetector detector(vpUpwardRig(200, 200), vpPwmLamps({frequency, 2000}));
-    detector.detect(noisy.render());
-    for (const vpLampObservation &seen : detector.observations()) {
-      if (seen.features.signal == vpStripeFeatures::Signal::pwm &&
-          seen.features.frequencySigma < 0.1 * seen.features.frequency) {
-        ++told;
-        EXPECT_NEAR(seen.features.frequency, frequency, 6 * seen.features.frequencySigma) << "seed " << seed;
-      }
-    }
-  }
-  EXPECT_GE(told, 15); // of 60: the others show their pulses not twice
 }
 
 // A lamp slower than any of the map may fall into its stripes; none of these is a lamp of the map.
@@ -468,5 +405,3 @@ TEST(LedDetector, DarkWhiteAndTinyPicturesHoldNoKnownLamp)
     }
   }
 }
-
-} // namespace

@@ -5,7 +5,9 @@
 #include <visp3/vlp_detection/vpOutlineFitter.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 
@@ -143,7 +145,7 @@ Edges edgesOf(const vpEdgeFitPicture &picture, const vpLedRoi &roi, const vpOutl
               double likelyBlur)
 {
   Edges found;
-  found.fit = vpOutlineFitter::boxOf(roi);
+  found.fit = vpOutlineFitter::boxOf(picture.lines, roi);
   const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(roi, picture.lines.cols));
   if (ends.size() < 6) {
     return found;
@@ -245,9 +247,55 @@ bool vpOutlineFitter::looksWhole(const vpLedRoi &roi)
   return roi.lampness > nearly * vpChordShape::mostLampness(2 * roi.box.height);
 }
 
-vpOutlineFit vpOutlineFitter::boxOf(const vpLedRoi &roi)
+double vpOutlineFitter::noiseOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
+{
+  static const double least = 0.3,
+                      perMedian = 0.954; // 8 bits round; median of two Gaussian pixels' difference
+  static const int enough = 10000;       // pairs, for a hundredth of it
+  const int step = 1 + box.area() / enough;
+  std::array<int, 256> pairs{}; // of each difference
+  int all = 0;
+  for (int line = box.y; line < box.br().y; line += step, all += box.width - 1) {
+    const unsigned char *row = lines[line] + box.x;
+    for (int x = 0; x + 1 < box.width; ++x) {
+      ++pairs[static_cast<size_t>(std::abs(row[x + 1] - row[x]))];
+    }
+  }
+  int median = 0;
+  for (int fewer = pairs[0]; 2 * fewer <= all && median < 255;) {
+    fewer += pairs[static_cast<size_t>(++median)];
+  }
+  return std::max(least, median / perMedian);
+}
+
+std::optional<double> vpOutlineFitter::backgroundOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box,
+                                                    int gap)
+{
+  static const int stretch = 5; // samples
+  std::vector<double> beside;
+  const int left = std::max(0, box.x - gap - stretch),
+            right = std::min(lines.cols - stretch, box.br().x + gap);
+  for (const int from : {left, right}) {
+    if (from + stretch <= box.x || from >= box.br().x) {
+      for (int line = box.y; line < box.br().y; ++line) {
+        beside.push_back(static_cast<double>(vpBrighter::sum(lines[line] + from, stretch)) / stretch);
+      }
+    }
+  }
+  if (beside.empty()) {
+    return std::nullopt;
+  }
+  const auto middle = beside.begin() + static_cast<long>(beside.size() / 2);
+  std::nth_element(beside.begin(), middle, beside.end());
+  return *middle;
+}
+
+vpOutlineFit vpOutlineFitter::boxOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 {
   vpOutlineFit fit;
+  const int gap = 2 + roi.box.width / 20;
+  fit.background = std::min(roi.level, backgroundOf(lines, roi.box, gap).value_or(roi.level));
+  fit.noise = noiseOf(lines, roi.box);
   vpLampOutline &outline = fit.outline;
   const double left = roi.box.x - 0.5, top = roi.box.y - 0.5;
   const double right = left + roi.box.width, bottom = top + roi.box.height;
@@ -269,7 +317,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
 {
   const bool fromBorderToBorder = roi.box.width >= lines.cols - 2 || roi.box.height >= lines.rows - 2;
   if (fromBorderToBorder) {
-    return boxOf(roi);
+    return boxOf(lines, roi);
   }
   const vpEdgeFitPicture picture{lines, linePositions, samplePositions, isAligned(samplePositions)};
   Edges edges = edgesOf(picture, roi, *this, likelyBlur);
@@ -291,7 +339,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
   }
   const bool sided = best.outline.shape == vpLampOutline::Shape::quadrilateral;
   if (cut && (!(edges.evenness > evenEdge) || (sided && !showsSides(best.outline, lines.size())))) {
-    best.outline = boxOf(roi).outline; // what is seen of its light says nothing of its middle
+    best.outline = boxOf(lines, roi).outline; // what is seen of its light says nothing of its middle
   } else if (edges.evenness < alone && best.outline.shape == vpLampOutline::Shape::ellipse) {
     addGhostVariance(best.outline, edges.misfit, lightOf(lines, roi));
   }

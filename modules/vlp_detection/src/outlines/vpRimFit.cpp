@@ -91,26 +91,6 @@ std::optional<Shape> nearest(const std::vector<cv::Point2f> &rim)
   shape.outline.otherShape = otherShape;
   return shape;
 }
-
-//! Median of the samples a little outside the ends.
-double backgroundOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
-{
-  std::vector<unsigned char> outside;
-  const int away = 3 + roi.box.width / 20;
-  for (const vpLedChord &chord : roi.chords) {
-    for (const int x : {chord.first - away, chord.last + away}) {
-      if (x >= 0 && x < lines.cols) {
-        outside.push_back(lines(chord.line, x));
-      }
-    }
-  }
-  if (outside.empty()) {
-    return roi.level;
-  }
-  const auto middle = outside.begin() + static_cast<long>(outside.size() / 2);
-  std::nth_element(outside.begin(), middle, outside.end());
-  return std::min<double>(*middle, roi.level);
-}
 } // namespace
 
 std::optional<vpOutlineFit> vpRimFit::mostStable(const std::vector<Ends> &levels, size_t &chosen)
@@ -193,7 +173,7 @@ void vpRimFit::allowForGlow(vpOutlineFit &fit, const Eigen::Vector2d &light)
 
 std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi)
 {
-  const double background = backgroundOf(lines, roi);
+  const vpOutlineFit box = vpOutlineFitter::boxOf(lines, roi);
   double brightest = 0;
   for (const vpLedChord &chord : roi.chords) {
     brightest = std::max<double>(
@@ -201,14 +181,15 @@ std::optional<vpOutlineFit> vpRimFit::of(const cv::Mat_<unsigned char> &lines, c
   }
   std::vector<Ends> levels;
   static const double most = 0.5; // share of the brightest light
-  for (double light = std::max(1.0, roi.level - background); light < most * (brightest - background);
+  for (double light = std::max(1.0, roi.level - box.background); light < most * (brightest - box.background);
        light *= levelRatio) {
-    levels.push_back(endsAt(lines, roi, background + light));
+    levels.push_back(endsAt(lines, roi, box.background + light));
   }
   size_t chosen = 0;
   std::optional<vpOutlineFit> fit = mostStable(levels, chosen);
   if (fit) {
-    fit->background = background;
+    fit->background = box.background;
+    fit->noise = box.noise;
     allowForGlow(*fit, middleOfLight(lines, roi).value_or(fit->outline.centre));
     if (fit->outline.shape ==
         vpLampOutline::Shape::quadrilateral) { // a side along the lines may lie in the dark

@@ -231,7 +231,7 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     }
     vpRimFit::allowForGlow(extent.fit, middles[chosen]);
     extent.fit.background = light.background(extent.roi.box);
-    extent.fit.noise = light.pixelNoise();
+    extent.fit.noise = vpOutlineFitter::noiseOf(lines, extent.roi.box);
     return extent;
   }
   return std::nullopt;

@@ -180,18 +180,6 @@ double vpDemodulation::noise() const
   return deviationOf(differences);
 }
 
-double vpDemodulation::pixelNoise() const
-{
-  std::vector<float> differences;
-  for (const vpLitBand &band : m_bands) {
-    const unsigned char *row = m_lines[band.first] + m_window.x;
-    for (int x = 0; x + 1 < m_window.width; ++x) {
-      differences.push_back(static_cast<float>(std::abs(row[x + 1] - row[x])));
-    }
-  }
-  return deviationOf(differences);
-}
-
 double vpDemodulation::brightest() const
 {
   float most = 0;

@@ -42,7 +42,6 @@ public:
   std::vector<vpLitRun> runsAbove(double level) const;
   const std::vector<vpLitBand> &bands() const { return m_bands; }
   double noise() const; // grey levels, standard deviation of a band's light
-  double pixelNoise() const;
   //! Median grey value of dark lines, where a lamp's region has no samples.
   double background(const cv::Rect &lamp = {}) const;
   double brightest() const;

@@ -252,7 +252,8 @@ bool vpLedDetector::readAround(const vpLinePicture &picture, Region &region) con
   around.box =
       cv::Rect(around.box.x - by, around.box.y - by, around.box.width + 2 * by, around.box.height + 2 * by) &
       cv::Rect(0, 0, picture.grey.cols, picture.grey.rows);
-  const vpStripeFeatures features = agreedStripes(picture, vpOutlineFitter::boxOf(around), around);
+  const vpStripeFeatures features =
+      agreedStripes(picture, vpOutlineFitter::boxOf(picture.grey, around), around);
   if (std::isnan(features.phase) || features.stripes <= region.lamp.features.stripes) {
     return false;
   }
@@ -315,7 +316,8 @@ void vpLedDetector::joinPieces(const vpLinePicture &picture, std::vector<Region>
         }
       }
     }
-    if (pieces.size() > 1 && vpPatchwork::isLamp(stripesOf(picture, vpOutlineFitter::boxOf(whole), whole))) {
+    if (pieces.size() > 1 &&
+        vpPatchwork::isLamp(stripesOf(picture, vpOutlineFitter::boxOf(picture.grey, whole), whole))) {
       Region together = observe(picture, whole, true);
       if (vpPatchwork::isLamp(together.lamp.features)) {
         regions[i] = together;

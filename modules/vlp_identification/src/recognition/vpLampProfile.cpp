@@ -6,13 +6,12 @@
 
 #include <visp3/vlp_identification/vpLedDetector.h>
 
-#include <visp3/vlp_core/vpBrighter.h>
-#include <visp3/vlp_detection/vpBlinkingLight.h>
-#include <visp3/vlp_identification/vpLitShare.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include <visp3/vlp_detection/vpBlinkingLight.h>
+#include <visp3/vlp_identification/vpLitShare.h>
 
 #include "vpSeenRegion.h"
 #include "vpTransposed.h"
@@ -34,34 +33,6 @@ cv::Rect boxOf(const vpLampOutline &outline, cv::Size picture)
   const cv::Point first(near(std::floor(box(0)), picture.width), near(std::floor(box(1)), picture.height)),
       last(near(std::ceil(box(2)), picture.width), near(std::ceil(box(3)), picture.height));
   return cv::Rect(first, last + cv::Point(1, 1)) & cv::Rect(cv::Point(), picture);
-}
-
-//! Median grey value of stretches to the left and right of the outline, \e gap beside it: of means, which
-//! noise that black clips has others of than single pixels' median.
-double backgroundOf(const cv::Mat_<unsigned char> &lines, const vpLampOutline &outline, const cv::Rect &box,
-                    double gap)
-{
-  static const int stretch = 5; // samples
-  std::vector<double> beside;
-  const vpOutlineLines across(outline);
-  for (int line = box.y; line < box.br().y; ++line) {
-    double first, last;
-    if (!across.stretch(line, first, last)) {
-      continue;
-    }
-    for (const double from : {std::floor(first - gap) - stretch + 1, std::ceil(last + gap)}) {
-      if (from >= 0 && from + stretch <= lines.cols) {
-        const int sum = vpBrighter::sum(lines[line] + static_cast<int>(from), stretch);
-        beside.push_back(static_cast<double>(sum) / stretch);
-      }
-    }
-  }
-  if (beside.empty()) {
-    return 0;
-  }
-  const auto middle = beside.begin() + static_cast<long>(beside.size() / 2);
-  std::nth_element(beside.begin(), middle, beside.end());
-  return *middle;
 }
 
 //! Share of the light's variance over the lines that goes with the lamp's waveform.
@@ -126,7 +97,8 @@ vpStripeProfile vpLedDetector::profile(const vpImage<unsigned char> &I, const vp
     roi.chords.push_back({line, roi.box.x, roi.box.br().x - 1});
   }
   static const double sigmas = 3; // of the blur, beyond which an edge shows no more of its lamp
-  fit.background = backgroundOf(picture.grey, fit.outline, roi.box, sigmas * lamp.blur + 1);
+  const int gap = static_cast<int>(std::ceil(sigmas * lamp.blur));
+  fit.background = vpOutlineFitter::backgroundOf(picture.grey, roi.box, gap).value_or(0);
   vpStripeProfile profile = vpStripeProfile::along(picture.grey, m_timing, fit, roi);
   if (!std::isnan(lamp.features.phase)) {
     vpStripeProfile agreed = vpStripeProfile::agreedByColumns(picture.grey, m_timing, fit, roi);

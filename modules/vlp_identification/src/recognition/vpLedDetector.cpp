@@ -330,7 +330,7 @@ vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, vpLed
   vpLedRoi inner = roi;
   inner.box = cv::Rect(roi.box.x, roi.box.y + soft, roi.box.width, std::max(0, roi.box.height - 2 * soft));
   const vpStripeProfile profile =
-      vpStripeProfile::along(picture.grey, m_timing, vpOutlineFitter::boxOf(inner), inner);
+      vpStripeProfile::along(picture.grey, m_timing, vpOutlineFitter::boxOf(picture.grey, inner), inner);
   roi.steady = roi.steady || isSteady(profile);
   return observe(picture, roi, !roi.steady && analyzer().blinks(profile));
 }
@@ -341,7 +341,7 @@ vpLedDetector::Region vpLedDetector::observe(const vpLinePicture &picture, const
   region.roi = roi;
   region.fit = blinks ? outlineFitter.fit(picture.grey, m_timing.linePositions(), m_timing.samplePositions(),
                                           roi, m_blur)
-                      : vpOutlineFitter::boxOf(roi);
+                      : vpOutlineFitter::boxOf(picture.grey, roi);
   if (region.fit.outline.shape == vpLampOutline::Shape::ellipse) {
     m_blur = region.fit.blur;
   }

@@ -8,9 +8,7 @@
 #include <visp3/vlp_identification/vpStripeAnalyzer.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <vector>
 
@@ -225,29 +223,6 @@ void SharedModulation::iterate()
   share();
 }
 
-//! Standard deviation of a region's pixels, grey levels: what neighbours differ by, whatever pattern they
-//! show.
-double noiseOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box)
-{
-  static const double least = 0.3,
-                      perMedian = 0.954; // 8 bits round; median of two Gaussian pixels' difference
-  static const int enough = 10000;       // pairs, for a hundredth of it
-  const int step = 1 + box.area() / enough;
-  std::array<int, 256> pairs{}; // of each difference
-  int all = 0;
-  for (int line = box.y; line < box.br().y; line += step, all += box.width - 1) {
-    const unsigned char *row = lines[line] + box.x;
-    for (int x = 0; x + 1 < box.width; ++x) {
-      ++pairs[static_cast<size_t>(std::abs(row[x + 1] - row[x]))];
-    }
-  }
-  int median = 0;
-  for (int fewer = pairs[0]; 2 * fewer <= all && median < 255;) {
-    fewer += pairs[static_cast<size_t>(++median)];
-  }
-  return std::max(least, median / perMedian);
-}
-
 /*!
   Means of the lines of a region, strip by strip, above its darkest twentieth; of those inside the lamp, where
   its outline is known.
@@ -297,7 +272,7 @@ vpStripeProfile vpStripeProfile::agreedByColumns(const cv::Mat_<unsigned char> &
   profile.logExposureSigma = timing.logExposureSigma();
   const int width = std::max(narrowest, roi.box.width / mostStrips);
   SharedModulation shared(stripsOf(lines, roi.box, fit.outline, width),
-                          noiseOf(lines, roi.box) / std::sqrt(width));
+                          vpOutlineFitter::noiseOf(lines, roi.box) / std::sqrt(width));
   for (int round = 0; round < rounds; ++round) {
     shared.iterate();
   }

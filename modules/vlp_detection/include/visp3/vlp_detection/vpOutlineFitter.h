@@ -6,6 +6,7 @@
 #define vpOutlineFitter_h
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -20,7 +21,7 @@ struct VISP_EXPORT vpOutlineFit {
   vpLampOutline outline;
   double blur = 0;       // px, standard deviation of the edge's spread
   double background = 0; // grey value just outside the lamp, median over its edge
-  double noise = 0;      // grey levels, standard deviation of pixels about the fit, median over the edge
+  double noise = 0;      // grey levels, standard deviation of a pixel
   bool sound = false;    // sharp, and as bright along all of its edge as inside: that of an evenly lit lamp
 
   //! The blur, px, of a lamp that white clips: at least a lens's, which the clipped edge hides.
@@ -69,7 +70,17 @@ public:
   static bool looksWhole(const vpLedRoi &roi);
 
   //! That of the lit pixels, a region, as uncertain as it is large.
-  static vpOutlineFit boxOf(const vpLedRoi &roi);
+  static vpOutlineFit boxOf(const cv::Mat_<unsigned char> &lines, const vpLedRoi &roi);
+
+  //! Standard deviation of the pixels in a box, grey levels: what neighbours differ by, whatever pattern they
+  //! show.
+  static double noiseOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box);
+
+  //! Median grey value of stretches to both sides of a box, \e gap samples beside it or at the border: of
+  //! means, which noise that black clips has others of than single samples' median. Nothing where none is in
+  //! the picture.
+  static std::optional<double> backgroundOf(const cv::Mat_<unsigned char> &lines, const cv::Rect &box,
+                                            int gap);
 };
 
 END_VISP_NAMESPACE
