@@ -132,7 +132,7 @@ const double alone = 0.8;          // evenness of a lamp without other light bes
 
 //! The likelier shape with edges where a region has them.
 struct Edges {
-  vpOutlineFit fit;    // a region where neither shape fits
+  vpOutlineFit fit;    // a region of unknown extent where neither shape fits
   double evenness = 0; // of the edges
   double kept = 0;     // share of the ends
   double misfit = 0;   // of an ellipse, grey levels^2
@@ -145,7 +145,6 @@ Edges edgesOf(const vpEdgeFitPicture &picture, const vpLedRoi &roi, const vpOutl
               double likelyBlur)
 {
   Edges found;
-  found.fit = vpOutlineFitter::boxOf(picture.lines, roi);
   const std::vector<cv::Point2f> ends = thinned(vpChordShape::outerEnds(roi, picture.lines.cols));
   if (ends.size() < 6) {
     return found;
@@ -330,7 +329,7 @@ vpOutlineFit vpOutlineFitter::fit(const cv::Mat_<unsigned char> &lines,
       edges.fit.outline.centreCovariance += pulled * pulled * Eigen::Matrix2d::Identity();
     }
   }
-  vpOutlineFit best = edges.fit;
+  vpOutlineFit best = edges.fit.outline.shape == vpLampOutline::Shape::region ? boxOf(lines, roi) : edges.fit;
   const bool cut = roi.cutAcross || roi.cutAlong;
   if (!cut && !edges.ofLamp) {
     if (const auto rim = vpRimFit::of(lines, roi)) {
