@@ -261,7 +261,7 @@ double vpOutlineFitter::noiseOf(const cv::Mat_<unsigned char> &lines, const cv::
     }
   }
   int median = 0;
-  for (int fewer = pairs[0]; 2 * fewer <= all && median < 255;) {
+  for (int fewer = pairs[0]; 2 * fewer <= all && fewer < all;) {
     fewer += pairs[static_cast<size_t>(++median)];
   }
   return std::max(least, median / perMedian);

@@ -20,7 +20,7 @@ BEGIN_VISP_NAMESPACE
 struct VISP_EXPORT vpOutlineFit {
   vpLampOutline outline;
   double blur = 0;       // px, standard deviation of the edge's spread
-  double background = 0; // grey value just outside the lamp, median over its edge
+  double background = 0; // grey value just outside the lamp, a median
   double noise = 0;      // grey levels, standard deviation of a pixel
   bool sound = false;    // sharp, and as bright along all of its edge as inside: that of an evenly lit lamp
 
