@@ -5,6 +5,7 @@
 #ifndef vpLampFrame_h
 #define vpLampFrame_h
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -23,6 +24,12 @@ inline double logNormal(const Eigen::Vector2d &off, const Eigen::Matrix2d &covar
 {
   return -0.5 * (off.dot(covariance.inverse() * off) + std::log(covariance.determinant())) -
          std::log(2 * M_PI);
+}
+
+//! Logarithm of the sum of what these are the logarithms of.
+inline double logSum(double a, double b)
+{
+  return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b)));
 }
 
 //! A lamp of the map in a frame.

@@ -19,11 +19,6 @@ namespace
 {
 const char *const misplaced = "not where the robot's motion has it";
 
-double logSum(double a, double b)
-{
-  return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b)));
-}
-
 //! Whether lamps are so far from where the filter expected them that their rays are not linear in it.
 bool bends(const std::vector<vpPoseHypothesis::Verdict> &verdicts)
 {
@@ -266,6 +261,7 @@ void vpPoseHypothesis::learn(const vpLampFrame &frame)
 void vpPoseHypothesis::learnStranger(const vpLampFrame &frame, size_t which)
 {
   Verdict &verdict = verdicts[which];
+  verdict.surprises = !verdict.wasStranger;
   if (!verdict.innovation.inFront) {
     return;
   }
@@ -338,6 +334,12 @@ size_t vpPoseHypothesis::accepted() const
 {
   return static_cast<size_t>(
       std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict &lamp) { return lamp.accepted; }));
+}
+
+bool vpPoseHypothesis::isSurprised() const
+{
+  return accepted() == 0 &&
+         std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict &lamp) { return lamp.surprises; });
 }
 
 void vpPoseHypothesis::tell(const vpLampFrame &frame, vpVlpFix &fix) const

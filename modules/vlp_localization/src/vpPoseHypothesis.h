@@ -30,6 +30,7 @@ public:
     double logLikelihood = 0; // of the ray, whatever it is
     double strayed = 0;       // nats, that a stranger does not hang still
     bool another = false;     // stranger than in the frame before
+    bool surprises = false;   // stranger only now, and as large as the lamp was
 
     double logPeak() const { return logNormal(Eigen::Vector2d::Zero(), innovation.covariance); } // of a lamp
   };
@@ -60,6 +61,8 @@ public:
   //! Which lamps were accepted, and why others were not.
   void mark(const vpLampFrame &frame, std::vector<vpLampObservation> &observations) const;
   size_t accepted() const;
+  //! Whether lamps are strangers that were none, and none is where it is expected.
+  bool isSurprised() const;
   //! Of a lamp of the latest frame: log likelihood that it adds where it was a stranger before, and is one
   //! still, had a lamp in its place \e asLamp.
   double asStill(size_t lamp, double asLamp) const;

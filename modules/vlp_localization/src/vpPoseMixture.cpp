@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include <visp3/core/vpMath.h>
+
 #include "vpLampGeometry.h"
 
 BEGIN_VISP_NAMESPACE
@@ -17,12 +19,14 @@ void vpPoseMixture::lose()
   m_lamps = lamps();
   m_lamps.forgetPlaces();
   m_places.clear();
+  m_logAnywhere = nowhere;
 }
 
 void vpPoseMixture::restart(const vpPoseHypothesis &place)
 {
   m_places.assign(1, place);
   m_places.front().logWeight = 0;
+  m_logAnywhere = nowhere;
 }
 
 void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry)
@@ -33,6 +37,7 @@ void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry
   }
   for (size_t k = 0; k < frame.lamps.size(); ++k) {
     compare(k);
+    m_logAnywhere += frame.logUniform;
   }
 }
 
@@ -44,7 +49,7 @@ void vpPoseMixture::follow(const vpLampFrame &frame, const vpVlpFilter &odometry
 */
 void vpPoseMixture::compare(size_t lamp)
 {
-  double asLamp = -1e300;
+  double asLamp = nowhere;
   for (vpPoseHypothesis &place : m_places) {
     const vpPoseHypothesis::Verdict &seen = place.verdicts[lamp];
     if (!seen.accepted) {
@@ -84,7 +89,7 @@ bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypothes
         frame.lamps[k].sight.covariance + unknown * unknown * Eigen::Matrix2d::Identity();
     most += k < moving ? logNormal(Eigen::Vector2d::Zero(), wide) : frame.lamps[k].logPeak;
   }
-  double now = -1e300;
+  double now = nowhere;
   for (const vpPoseHypothesis &place : m_places) {
     now = std::max(now, place.logWeight);
   }
@@ -113,13 +118,29 @@ void vpPoseMixture::addElsewhere(const vpLampFrame &frame, vpPoseHypothesis plac
 {
   const vpPoseHypothesis::Begun begun = place.begun(likeliest());
   place.borneOut = place.accepted() > poseLamps;
-  place.logWeight = std::log(hypotheses.relocation * since * likeliest().odometryIsOff()) + begun.put;
+  const double before = m_logAnywhere - static_cast<double>(frame.lamps.size()) * frame.logUniform;
+  place.logWeight = logSum(before, logPut(hypotheses, since)) + begun.put;
+  m_logAnywhere = nowhere;
   if (!place.borneOut) { // or the lamps have given way to others
     vpPoseHypothesis here = likeliest().coasted(frame);
     here.logWeight = std::log(hypotheses.copy * since) + begun.copied;
     m_places.push_back(std::move(here));
   }
   m_places.push_back(std::move(place));
+}
+
+void vpPoseMixture::addAnywhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, double since)
+{
+  if (likeliest().isSurprised()) {
+    m_logAnywhere = logSum(m_logAnywhere, logPut(hypotheses, since) +
+                                              static_cast<double>(frame.lamps.size()) * frame.logUniform);
+  }
+}
+
+double vpPoseMixture::logPut(const vpVlpHypotheses &hypotheses, double since) const
+{
+  const double untold = likeliest().filter.rolls() ? likeliest().odometryIsOff() : 1; // by wheels
+  return std::log(hypotheses.relocation * since * untold);
 }
 
 //! Whether two places are one: pose and velocity of the other are within what the first is uncertain by.
@@ -159,13 +180,15 @@ void vpPoseMixture::reduce(const vpVlpHypotheses &hypotheses)
       m_places.erase(m_places.begin() + static_cast<long>(p));
     }
   }
-  double sum = 0;
+  m_logAnywhere = m_logAnywhere < most + std::log(hypotheses.negligible) ? nowhere : m_logAnywhere;
+  double sum = m_logAnywhere;
   for (const vpPoseHypothesis &place : m_places) {
-    sum += std::exp(place.logWeight - most);
+    sum = logSum(sum, place.logWeight);
   }
   for (vpPoseHypothesis &place : m_places) {
-    place.logWeight -= most + std::log(sum);
+    place.logWeight -= sum;
   }
+  m_logAnywhere -= sum;
 }
 
 void vpPoseMixture::settle(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpFilter &filter,
@@ -200,7 +223,8 @@ void vpPoseMixture::tell(const vpLampFrame &frame, const vpVlpHypotheses &hypoth
   vpVlpFix &fix = location.fix;
   likeliest().tell(frame, fix);
   location.relocated = !likeliest().borneOut;
-  if (m_places.size() == 1) {
+  const double anywhere = std::exp(m_logAnywhere);
+  if (m_places.size() == 1 && anywhere == 0) {
     return;
   }
   const vpBasePose pose = vpBasePose::of(fix.wMb);
@@ -219,6 +243,9 @@ void vpPoseMixture::tell(const vpLampFrame &frame, const vpVlpHypotheses &hypoth
       elsewhere += weight;
     }
   }
+  const vpVlpFilter &filter = likeliest().filter;
+  fix.covariance.topLeftCorner<3, 3>().diagonal().array() += anywhere * vpMath::sqr(filter.startPlace);
+  fix.covariance(5, 5) += anywhere * vpMath::sqr(M_PI) / 3; // any heading
   fix.ambiguous = elsewhere > 1 - hypotheses.decided;
 }
 

@@ -39,6 +39,8 @@ public:
   //! The robot was put there with the latest frame. \param since s, since the frame before.
   void addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place, const vpVlpHypotheses &hypotheses,
                     double since);
+  //! It may have been put where the latest frame's lamps do not tell.
+  void addAnywhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, double since);
   //! Whether all are so uncertain that they mean nothing.
   bool lost() const;
   //! Likewise at a time to come (s), had the robot started or stopped since.
@@ -49,13 +51,18 @@ public:
               vpVlpLocation &location);
 
 private:
+  static constexpr double nowhere = -1e300; // logarithm of 0
+
   void compare(size_t lamp);
+  //! Log probability that the robot was put elsewhere in that time, wherever that is.
+  double logPut(const vpVlpHypotheses &hypotheses, double since) const;
   void reduce(const vpVlpHypotheses &hypotheses);
   void tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpLocation &location) const;
   static bool isLost(const vpPoseHypothesis &place);
   static bool agree(const vpPoseHypothesis &place, const vpPoseHypothesis &other);
 
   std::vector<vpPoseHypothesis> m_places; // the likeliest first
+  double m_logAnywhere = nowhere;         // log probability of none of them
   vpLampHistory m_lamps;                  // where there is no place
 };
 

@@ -50,6 +50,13 @@ void vpVlpFilter::takeOdometry(const vpVlpFilter &other)
   }
 }
 
+bool vpVlpFilter::rolls() const
+{
+  static const double standing = 3; // standard deviations of what they may say then
+  return !m_odometry.empty() && (std::abs(m_odometry.back().v) > standing * odometrySpeed ||
+                                 std::abs(m_odometry.back().w) > standing * odometryTurnRate);
+}
+
 //! The base on its arc for \e dt, its velocity constant; backwards where that is negative.
 void vpVlpFilter::arc(double dt)
 {

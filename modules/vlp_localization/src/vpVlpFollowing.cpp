@@ -186,7 +186,10 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
       filter);
   const bool elsewhere = m_places->mayBeElsewhere(m_scratch->frame, hypotheses, since),
              off = m_places->mayBeOff(m_scratch->frame, hypotheses);
-  if ((elsewhere || off) && aloneIsGood()) {
+  const bool tells = (elsewhere || off) && aloneIsGood();
+  if (!tells) {
+    m_places->addAnywhere(m_scratch->frame, hypotheses, since);
+  } else {
     if (elsewhere) {
       m_places->addElsewhere(m_scratch->frame, placeAt(alone, m_scratch->frame, true, 0), hypotheses, since);
     }

@@ -126,6 +126,8 @@ public:
   void takeOdometry(const vpVlpFilter &other);
   //! Whether it tells of the time up to the next line that is seen.
   bool hasOdometry() const { return m_odometry.size() > 1; }
+  //! Whether the latest sample is of wheels that do not stand.
+  bool rolls() const;
 
   //! Predicts up to \e time, s. Before time(): no more than a small step back, as for a line read earlier.
   void advance(double time);

@@ -27,7 +27,7 @@ struct VISP_EXPORT vpVlpHypotheses {
   double slip = 0.0003; // 1/s, at which it ceases to
   double grip = 3;      // 1/s, at which it does so again
 
-  // Whether it was put elsewhere, wheels standing or not.
+  // Whether it was put elsewhere, of which wheels that stand tell nothing.
   double relocation = 0.01; // 1/s
   double reach = 0.1;       // m, of a step in x and y: bivariate Cauchy distribution
   double turn = 0.6;        // rad, of a turn: Cauchy distribution
