@@ -61,6 +61,7 @@ TEST(CarriedRobot, WheelsThatStandDoNotSpeakAgainstIt)
     carry(seed, 2, true, [seed](int k, const vpVlpLocation &location, const vpPlannedPlace &place) {
       ASSERT_TRUE(location.fix.valid);
       EXPECT_LT(vpSigmasOff(location.fix, place), most) << "seed " << seed << ", frame " << k;
+      EXPECT_EQ(location.fix.ambiguous || location.relocated, k >= carried);
       if (k >= carried + 2) {
         EXPECT_LT(vpErrorOf(location.fix, place), right) << "seed " << seed << ", frame " << k;
       }
