@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: GPL-2.0-or-later
  */
 // A robot that is put elsewhere between two frames: the lamps' middles are simulated, no picture is
-// (vpSeenLamps). bench_jumps [JUMPS of each row] (500)
+// (vpSeenLamps). "2, then 1": after the jump one lamp shines. bench_jumps [JUMPS of each row] (500)
 
 #include <algorithm>
 #include <cstdio>
@@ -97,8 +97,10 @@ int main(int argc, char **argv)
               "sigma | farthest of these, mm | not right in the third frame "
               "|\n|---|---|---|---|---|---|---|---|---|\n");
   const std::pair<size_t, size_t> ceilings[] = {{2, 2}, {2, 1}, {3, 3}, {4, 4}}; // lamps, left
-  const Robot robots[] = {
-      {"stands", false, false}, {"stands, wheels say so", false, true}, {"drives", true, false}};
+  const Robot robots[] = {{"stands", false, false},
+                          {"stands, wheels say so", false, true},
+                          {"drives", true, false},
+                          {"drives, wheels roll on", true, true}};
   for (const auto &[lamps, left] : ceilings) {
     for (const double rate : {10., 12.}) {
       for (const Robot &robot : robots) {
