@@ -154,6 +154,33 @@ TEST(LedDetector, LampCutByTheBorderIsFlagged)
   EXPECT_EQ(detector.observations()[0].id, "L2000");
 }
 
+// What the border hides of a lamp, it may hide in a dark stripe. A glow about the lamp is no part of it.
+TEST(LedDetector, WhereTheBorderCutsALampItsMiddleIsAsUncertainAsItIsSaidToBe)
+{
+  int named = 0;
+  for (const double beyond : {-20, -10, -3, 4, 8, 12, 16}) // px, of the middle, as seen from the border
+    for (const double frequency : {2000, 2600})
+      for (int k = 0; k < 20; ++k) {
+        vpLampPicture painted = fourLampPicture();
+        painted.lamps = {lampAt(120.4, -beyond, frequency), lampAt(120.4, -beyond, frequency)};
+        painted.lamps[0].phase = painted.lamps[1].phase = k / 20.0;
+        painted.lamps[1].a = painted.lamps[1].b = 70;
+        painted.lamps[1].amplitude = 1.5;
+        vpLedDetector detector(vpUpwardRig(400, 320), fourLampMap());
+        detector.detect(painted.render());
+        for (const vpLampObservation &seen : detector.observations()) {
+          if (!seen.id.empty()) {
+            const Eigen::Vector2d error = seen.point - painted.lamps[0].centre;
+            EXPECT_LT(error.dot(seen.covariance.inverse() * error), 5 * 5)
+                << beyond << " " << frequency << " " << k << ": " << error.transpose() << " +- "
+                << seen.covariance.diagonal().cwiseSqrt().transpose();
+            ++named;
+          }
+        }
+      }
+  EXPECT_GT(named, 200);
+}
+
 TEST(LedDetector, UnmodulatedLampAndWindowAreNoLampsOfTheMap)
 {
   vpLampPicture painted = fourLampPicture();

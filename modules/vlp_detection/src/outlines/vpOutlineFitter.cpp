@@ -306,6 +306,9 @@ vpOutlineFit vpOutlineFitter::boxOf(const cv::Mat_<unsigned char> &lines, const 
   outline.centreCovariance =
       Eigen::Vector2d(roi.box.width * roi.box.width, roi.box.height * roi.box.height).asDiagonal();
   outline.centreCovariance /= 12;
+  if (roi.cutAcross || roi.cutAlong) { // it may lie as far beyond the border as the lamp is large
+    outline.centreCovariance += 4 * outline.a * outline.a * Eigen::Matrix2d::Identity();
+  }
   return fit;
 }
 

@@ -146,8 +146,8 @@ vpLedRoi regionOf(const std::vector<vpLitRun> &outer, const std::vector<vpLitBan
   return roi;
 }
 
-//! What touches the window's sides.
-bool isCut(const vpLedRoi &roi, const cv::Rect &window)
+//! Whether it touches the window's sides.
+bool reaches(const vpLedRoi &roi, const cv::Rect &window)
 {
   return roi.box.x <= window.x || roi.box.y <= window.y || roi.box.br().x >= window.br().x ||
          roi.box.br().y >= window.br().y;
@@ -215,13 +215,14 @@ std::optional<vpBlinkingLight::Extent> vpBlinkingLight::about(const cv::Mat_<uns
     if (regions.empty() || regions.front().chords.empty()) {
       return std::nullopt;
     }
-    if (isCut(regions.front(), window) && window != picture && round + 1 < rounds) {
+    if (reaches(regions.front(), window) && window != picture && round + 1 < rounds) {
       box |= regions.front().box;
       continue;
     }
     size_t chosen = 0;
     const std::optional<vpOutlineFit> fit = vpRimFit::mostStable(levels, chosen);
-    if (!fit || isCut(regions[chosen], picture)) {
+    vpChordShape::markCuts(regions[chosen], picture.size());
+    if (!fit || regions[chosen].cutAcross || regions[chosen].cutAlong) {
       return std::nullopt; // what is seen of a lamp that the border cuts says nothing of its middle
     }
     Extent extent{regions[chosen], *fit};

@@ -305,20 +305,23 @@ int vpChordShape::longestGap(const vpLedRoi &roi)
   return gap;
 }
 
-bool vpChordShape::mayGoOn(const vpLedRoi &roi, const cv::Size &picture)
+namespace
+{
+//! Whether a dark stripe may part the region from the rest of its lamp, beyond the first or last line.
+bool mayGoOn(const vpLedRoi &roi, const cv::Size &picture)
 {
   const int before = roi.box.y;
   const int after = picture.height - roi.box.br().y;
-  const int gap = longestGap(roi);
+  const int gap = vpChordShape::longestGap(roi);
   static const int more = 1; // lines, half lit at either end of a gap
   if (gap == 0 || std::min(before, after) > gap + more) {
     return false;
   }
-  const std::vector<cv::Point2f> outer = outerEnds(roi, picture.width);
+  const std::vector<cv::Point2f> outer = vpChordShape::outerEnds(roi, picture.width);
   const double tolerance = 0.6 + 0.02 * std::max(roi.box.width, roi.box.height);
   cv::Rect longer = roi.box; // the part within the picture may be the smaller one
   longer.height *= 3;
-  const bool ellipse = ellipseMisfit(outer, longer) < tolerance;
+  const bool ellipse = vpChordShape::ellipseMisfit(outer, longer) < tolerance;
   std::pair<double, double> lines(-1, picture.height);
   if (ellipse) {
     lines = ellipseLines(outer, roi.box);
@@ -331,6 +334,13 @@ bool vpChordShape::mayGoOn(const vpLedRoi &roi, const cv::Size &picture)
   std::reverse(widths.begin(), widths.end());
   const bool last = after <= gap + more && lines.second > picture.height - 1 && linesToClose(widths) > after;
   return first || last;
+}
+} // namespace
+
+void vpChordShape::markCuts(vpLedRoi &roi, const cv::Size &picture)
+{
+  roi.cutAcross = roi.box.x <= 0 || roi.box.br().x >= picture.width;
+  roi.cutAlong = roi.box.y <= 0 || roi.box.br().y >= picture.height || mayGoOn(roi, picture);
 }
 
 END_VISP_NAMESPACE

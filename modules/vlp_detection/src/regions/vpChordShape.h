@@ -62,10 +62,11 @@ Score score(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double da
 int longestGap(const vpLedRoi &roi);
 
 /*!
-  Whether the lamp may go on beyond the first or last line of the picture, though the region ends before it:
-  by a dark gap no longer than the lamp shows elsewhere, and the chords there do not close.
+  Tells whether the picture's border cuts the region's lamp: it touches the border, or may go on beyond the
+  first or last line though it ends before it, by a dark gap no longer than the lamp shows elsewhere, and the
+  chords there do not close.
 */
-bool mayGoOn(const vpLedRoi &roi, const cv::Size &picture);
+void markCuts(vpLedRoi &roi, const cv::Size &picture);
 
 } // namespace vpChordShape
 

@@ -370,7 +370,7 @@ std::vector<vpLedRoi> vpLedRoiDetector::lampsOf(const cv::Mat_<unsigned char> &l
   }
   std::vector<vpLedRoi> rois = sifted(large);
   for (vpLedRoi &roi : rois) {
-    roi.cutAlong = roi.cutAlong || vpChordShape::mayGoOn(roi, lines.size());
+    vpChordShape::markCuts(roi, lines.size());
   }
   return rois;
 }

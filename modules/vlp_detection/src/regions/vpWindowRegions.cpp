@@ -26,8 +26,7 @@ void moveTo(vpLedRoi &roi, const cv::Point &origin, const cv::Size &picture)
     chord.first += origin.x;
     chord.last += origin.x;
   }
-  roi.cutAcross = roi.box.x <= 0 || roi.box.br().x >= picture.width;
-  roi.cutAlong = roi.box.y <= 0 || roi.box.br().y >= picture.height || vpChordShape::mayGoOn(roi, picture);
+  vpChordShape::markCuts(roi, picture);
 }
 
 //! Larger by as much as the regions that its sides may cut, on these sides. Itself where there are none.
