@@ -61,6 +61,7 @@ std::vector<Setting> settings()
       hypothesis("slip", &H::slip),
       hypothesis("grip", &H::grip),
       hypothesis("relocation", &H::relocation),
+      hypothesis("rolling", &H::rolling),
       hypothesis("reach", &H::reach),
       hypothesis("turn", &H::turn),
       hypothesis("floorStep", &H::floorStep),

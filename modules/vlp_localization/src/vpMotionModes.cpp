@@ -72,6 +72,18 @@ size_t vpMotionModes::likeliest() const
   return static_cast<size_t>(std::max_element(first, first + static_cast<long>(possible())) - first);
 }
 
+void vpMotionModes::heedOdometry(const std::array<double, count> &logDensity)
+{
+  const double most = *std::max_element(logDensity.begin() + alone, logDensity.end());
+  const auto by = m_probability.begin() + alone;
+  const double before = std::accumulate(by, m_probability.end(), 0.);
+  for (size_t k = alone; k < count; ++k) {
+    m_probability[k] *= std::exp(logDensity[k] - most);
+  }
+  const double after = std::accumulate(by, m_probability.end(), 0.);
+  std::for_each(by, m_probability.end(), [&](double &one) { one *= after > 0 ? before / after : 1; });
+}
+
 double vpMotionModes::correct(const std::array<double, count> &logLikelihood)
 {
   const double most = *std::max_element(logLikelihood.begin(), logLikelihood.begin() + possible());

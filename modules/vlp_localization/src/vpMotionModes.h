@@ -39,6 +39,9 @@ public:
   //! What the frames since the start have told of the motion, nats (Kullback and Leibler 1951).
   double information() const { return m_information; }
   double operator[](size_t mode) const { return m_probability[mode]; }
+  //! For frames whose lamps do not tell: whether it goes on steadily or as the wheels say, by how likely the
+  //! least likely of their samples is (log density), if they are right, of which they tell nothing.
+  void heedOdometry(const std::array<double, count> &logDensity);
   //! By how likely each mode makes the frame. \return Log likelihood of the frame.
   double correct(const std::array<double, count> &logLikelihood);
 

@@ -111,6 +111,14 @@ double vpPoseHypothesis::weigh(const vpLampFrame &frame, double dt)
     logLikelihood[mode] = m_passes[mode].logLikelihood;
     most[which] = std::max(most[which], logPrior + logLikelihood[mode]);
   }
+  const bool told = std::any_of(m_passes.begin(), m_passes.begin() + static_cast<long>(m_modes.possible()),
+                                [](const Pass &pass) { return accepted(pass.verdicts) > 0; });
+  if (odometry && !told) {
+    std::array<double, vpMotionModes::count> samples{};
+    std::transform(m_passes.begin(), m_passes.end(), samples.begin(),
+                   [](const Pass &pass) { return pass.filter.leastOdometry(); });
+    m_modes.heedOdometry(samples);
+  }
   const double all = m_modes.correct(logLikelihood);
   for (size_t which = 0; which < (odometry ? 2 : 1); ++which) {
     mix(m_apart[which], which == 0 ? 0 : vpMotionModes::alone,
@@ -120,7 +128,29 @@ double vpPoseHypothesis::weigh(const vpLampFrame &frame, double dt)
   filter.odometry =
       m_modes.odometryIsOff() < 0.5 ? vpVlpFilter::Odometry::followed : vpVlpFilter::Odometry::ignored;
   verdicts = m_passes[likeliest].verdicts;
+  if (!told) {
+    mixInnovations();
+  }
   return all;
+}
+
+//! Where the modes together expect each lamp, none of which has corrected them.
+void vpPoseHypothesis::mixInnovations()
+{
+  for (size_t k = 0; k < verdicts.size(); ++k) {
+    vpVlpFilter::Innovation &mixed = verdicts[k].innovation;
+    const Eigen::Vector2d likeliest = mixed.ray;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+    for (size_t mode = 0; mode < m_modes.possible(); ++mode) {
+      const vpVlpFilter::Innovation &one = m_passes[mode].verdicts[k].innovation;
+      const Eigen::Vector2d off = one.ray - likeliest;
+      mean += m_modes[mode] * off;
+      square += m_modes[mode] * (one.covariance + off * off.transpose());
+    }
+    mixed.ray += mean;
+    mixed.covariance = square - mean * mean.transpose();
+  }
 }
 
 //! Of the passes of some modes. \return The likeliest of them.
@@ -330,7 +360,7 @@ vpPoseHypothesis::Begun vpPoseHypothesis::begun(const vpPoseHypothesis &before) 
           common + across(of.copyReach) - std::log(2 * M_PI)};
 }
 
-size_t vpPoseHypothesis::accepted() const
+size_t vpPoseHypothesis::accepted(const std::vector<Verdict> &verdicts)
 {
   return static_cast<size_t>(
       std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict &lamp) { return lamp.accepted; }));

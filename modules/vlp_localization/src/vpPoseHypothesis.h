@@ -60,7 +60,7 @@ public:
   void tell(const vpLampFrame &frame, vpVlpFix &fix) const;
   //! Which lamps were accepted, and why others were not.
   void mark(const vpLampFrame &frame, std::vector<vpLampObservation> &observations) const;
-  size_t accepted() const;
+  size_t accepted() const { return accepted(verdicts); }
   //! Whether lamps are strangers that were none, and none is where it is expected.
   bool isSurprised() const;
   //! Of a lamp of the latest frame: log likelihood that it adds where it was a stranger before, and is one
@@ -85,12 +85,14 @@ private:
     double logLikelihood;
   };
 
+  static size_t accepted(const std::vector<Verdict> &verdicts);
   void correct(const vpLampFrame &frame, double least, Pass &pass) const;
   void attempt(const vpLampFrame &frame, const vpVlpFilter &before, size_t mode, double least, Pass &pass);
   Verdict judge(const vpLampFrame &frame, size_t which, bool told, vpLampSight &sight,
                 const vpVlpFilter &filter, const vpVlpFilter::Predicted &predicted) const;
   double weigh(const vpLampFrame &frame, double dt);
   size_t mix(vpVlpFilter &mixed, size_t first, size_t end) const;
+  void mixInnovations();
   void compare(const vpLampFrame &frame);
   void learn(const vpLampFrame &frame);
   void learnStranger(const vpLampFrame &frame, size_t which);

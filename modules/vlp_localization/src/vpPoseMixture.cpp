@@ -139,7 +139,8 @@ void vpPoseMixture::addAnywhere(const vpLampFrame &frame, const vpVlpHypotheses 
 
 double vpPoseMixture::logPut(const vpVlpHypotheses &hypotheses, double since) const
 {
-  const double untold = likeliest().filter.rolls() ? likeliest().odometryIsOff() : 1; // by wheels
+  const double off = likeliest().odometryIsOff(),
+               untold = likeliest().filter.rolls() ? off + (1 - off) * hypotheses.rolling : 1; // by wheels
   return std::log(hypotheses.relocation * since * untold);
 }
 

@@ -58,6 +58,7 @@ void vpVlpFilter::mark(double time)
   m_information.setZero();
   m_sights = 0;
   m_imageSpeed = 0;
+  m_leastOdometry = std::numeric_limits<double>::max();
   advance(time);
   m_markTime = m_time;
   m_x.segment<6>(mark0) = m_x.head<6>();
@@ -223,8 +224,8 @@ void vpVlpFilter::update(const vpLampSight &lamp, const Predicted &predicted)
 }
 
 template <int Values>
-void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
-                          const Eigen::Matrix<double, Values, Values> &R)
+double vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
+                            const Eigen::Matrix<double, Values, Values> &R)
 {
   const Eigen::Index n = m_x.size();
   m_PH.resize(n, 3);
@@ -257,6 +258,8 @@ void vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<doubl
     }
   }
   mirror();
+  return -0.5 *
+         (innovation.dot(inverse * innovation) + std::log(S.determinant()) + Values * std::log(2 * M_PI));
 }
 
 //! Makes the covariance symmetric, after what changed the columns of what is estimated.
@@ -295,10 +298,10 @@ void vpVlpFilter::carryAlong(Index first, const Eigen::Vector2d &shift)
   }
 }
 
-template void vpVlpFilter::measure<2>(const Derivative<2> &, const Eigen::Vector2d &,
-                                      const Eigen::Matrix2d &);
-template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
-                                      const Eigen::Matrix3d &);
+template double vpVlpFilter::measure<2>(const Derivative<2> &, const Eigen::Vector2d &,
+                                        const Eigen::Matrix2d &);
+template double vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
+                                        const Eigen::Matrix3d &);
 
 //! The pose in the state from there on.
 vpVlpFilter::Pose vpVlpFilter::poseOf(Index first) const

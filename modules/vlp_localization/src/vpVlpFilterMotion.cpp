@@ -124,9 +124,10 @@ void vpVlpFilter::move(double dt, bool accelerates)
 //! The velocity in the sample's interval: followed, it is that, whatever it was before.
 void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample)
 {
-  static const double anySpeed = 1, anyTurn = 10; // m/s, rad/s: wheels start and stop within a sample
-  for (int i : {vx, vy, w}) {
-    m_P(i, i) += odometry == Odometry::followed ? vpMath::sqr(i == w ? anyTurn : anySpeed) : 0;
+  const double dt = sample.timestamp - before.timestamp;
+  if (odometry == Odometry::followed) { // it starts or stops
+    m_P.block<2, 2>(vx, vx).diagonal().array() += vpMath::sqr(acceleration) * dt;
+    m_P(w, w) += vpMath::sqr(turnAcceleration) * dt;
   }
   const Eigen::RowVector3d forward = Eigen::RowVector3d::UnitX(), sideways = Eigen::RowVector3d::UnitY(),
                            turning = Eigen::RowVector3d::UnitZ();
@@ -142,7 +143,6 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   H.add(turnBias, turning);
   // An error that changes from sample to sample averages out over samples, however long they are.
   static const double nominal = 0.02; // s
-  const double dt = sample.timestamp - before.timestamp;
   const double share = odometryShare * std::sqrt(nominal / std::max(dt, 1e-3));
   // Where speeds change from sample to sample they do so within one.
   static const double within = 0.3; // share of the change, standard deviation
@@ -154,7 +154,7 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
             vpMath::sqr(within * (sample.w - before.w));
   const Eigen::Vector3d innovation(sample.v - scale * along, -across,
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
-  measure<3>(H, innovation - this->aside(H), R);
+  m_leastOdometry = std::min(m_leastOdometry, measure<3>(H, innovation - this->aside(H), R));
 }
 
 void vpVlpFilter::advance(double time)

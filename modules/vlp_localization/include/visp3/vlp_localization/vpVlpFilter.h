@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -128,6 +129,8 @@ public:
   bool hasOdometry() const { return m_odometry.size() > 1; }
   //! Whether the latest sample is of wheels that do not stand.
   bool rolls() const;
+  //! Log density of that one of its samples since the mark that is the least likely; very large without any.
+  double leastOdometry() const { return m_leastOdometry; }
 
   //! Predicts up to \e time, s. Before time(): no more than a small step back, as for a line read earlier.
   void advance(double time);
@@ -278,10 +281,10 @@ private:
   void standAside(const Eigen::Matrix<double, 9, 1> &path);
   void carryAlong(Index first, const Eigen::Vector2d &shift);
   void mirror();
-  //! \param R Covariance of what was measured.
+  //! \param R Covariance of what was measured. \return Log density of it.
   template <int Values>
-  void measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
-               const Eigen::Matrix<double, Values, Values> &R);
+  double measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
+                 const Eigen::Matrix<double, Values, Values> &R);
   void arc(double dt);
   void move(double dt, bool accelerates);
   void wander(double time);
@@ -308,13 +311,14 @@ private:
   Eigen::Matrix4d m_information = Eigen::Matrix4d::Zero(); // of x, y, z and yaw, by the lamps since the mark
   int m_sights = 0;                                        // lamps since the mark
   double m_imageSpeed = 0;                                 // px/s, of the fastest of them
+  double m_leastOdometry = std::numeric_limits<double>::max();
   Eigen::Matrix4d m_common =
       Eigen::Matrix4d::Zero(); // covariance of what frames have in common: see conclude()
   double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 
-extern template void vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
-                                             const Eigen::Matrix3d &);
+extern template double vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
+                                               const Eigen::Matrix3d &);
 
 END_VISP_NAMESPACE
 
