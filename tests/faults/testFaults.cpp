@@ -160,7 +160,8 @@ protected:
 
   /*!
     One of the first \e most large blocks of memory after the other, the later the sparser, is not there: an
-    error, or no matter. No file is left that is not whole. GDAL, which OpenCV asks of each format, ends the program itself.
+    error, or no matter. No file is left that is not whole. GDAL, which OpenCV asks of each format, ends the
+    program itself.
   */
   void endMemory(const Writer &writer, int most)
   {
