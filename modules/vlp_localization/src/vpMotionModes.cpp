@@ -75,6 +75,9 @@ size_t vpMotionModes::likeliest() const
 void vpMotionModes::heedOdometry(const std::array<double, count> &logDensity)
 {
   const double most = *std::max_element(logDensity.begin() + alone, logDensity.end());
+  if (!std::isfinite(most)) {
+    return; // no motion explains them
+  }
   const auto by = m_probability.begin() + alone;
   const double before = std::accumulate(by, m_probability.end(), 0.);
   for (size_t k = alone; k < count; ++k) {

@@ -142,14 +142,20 @@ void vpPoseHypothesis::mixInnovations()
     const Eigen::Vector2d likeliest = mixed.ray;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+    double sum = 0;
     for (size_t mode = 0; mode < m_modes.possible(); ++mode) {
+      if (!(m_modes[mode] > m_hypotheses.negligible)) {
+        continue; // may have been given up before it came to the lamp
+      }
       const vpVlpFilter::Innovation &one = m_passes[mode].verdicts[k].innovation;
       const Eigen::Vector2d off = one.ray - likeliest;
       mean += m_modes[mode] * off;
       square += m_modes[mode] * (one.covariance + off * off.transpose());
+      sum += m_modes[mode];
     }
+    mean /= sum;
     mixed.ray += mean;
-    mixed.covariance = square - mean * mean.transpose();
+    mixed.covariance = square / sum - mean * mean.transpose();
   }
 }
 
