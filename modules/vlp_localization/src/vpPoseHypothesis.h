@@ -67,6 +67,7 @@ public:
   //! still, had a lamp in its place \e asLamp.
   double asStill(size_t lamp, double asLamp) const;
   double logLikelihood() const { return m_logLikelihood; } // of the latest frame
+  double since() const { return m_since; }                 // s, from the frame before to the latest one
   //! What the frames since the start have told of the motion, nats.
   double information() const { return m_modes.information(); }
 

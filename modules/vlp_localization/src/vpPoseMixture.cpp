@@ -69,8 +69,7 @@ void vpPoseMixture::compare(size_t lamp)
   }
 }
 
-bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses,
-                                   double since) const
+bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const
 {
   if (frame.lamps.size() < poseLamps) {
     return false;
@@ -82,8 +81,9 @@ bool vpPoseMixture::mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypothes
   const vpVlpFilter &filter = likeliest().filter;
   const double unknown =
       filter.startVelocity * (frame.lamps.back().time - frame.lamps.front().time); // of a ray
-  double most = std::log(hypotheses.relocation * since / (2 * M_PI * hypotheses.reach * hypotheses.reach) /
-                         (M_PI * hypotheses.turn) / (M_PI * hypotheses.floorStep));
+  double most = std::log(hypotheses.relocation * likeliest().since() /
+                         (2 * M_PI * hypotheses.reach * hypotheses.reach) / (M_PI * hypotheses.turn) /
+                         (M_PI * hypotheses.floorStep));
   for (size_t k = poseLamps; k < frame.lamps.size(); ++k) {
     const Eigen::Matrix2d wide =
         frame.lamps[k].sight.covariance + unknown * unknown * Eigen::Matrix2d::Identity();
@@ -114,34 +114,34 @@ void vpPoseMixture::addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypo
 }
 
 void vpPoseMixture::addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place,
-                                 const vpVlpHypotheses &hypotheses, double since)
+                                 const vpVlpHypotheses &hypotheses)
 {
   const vpPoseHypothesis::Begun begun = place.begun(likeliest());
   place.borneOut = place.accepted() > poseLamps;
   const double before = m_logAnywhere - static_cast<double>(frame.lamps.size()) * frame.logUniform;
-  place.logWeight = logSum(before, logPut(hypotheses, since)) + begun.put;
+  place.logWeight = logSum(before, logPut(hypotheses)) + begun.put;
   m_logAnywhere = nowhere;
   if (!place.borneOut) { // or the lamps have given way to others
     vpPoseHypothesis here = likeliest().coasted(frame);
-    here.logWeight = std::log(hypotheses.copy * since) + begun.copied;
+    here.logWeight = std::log(hypotheses.copy * here.since()) + begun.copied;
     m_places.push_back(std::move(here));
   }
   m_places.push_back(std::move(place));
 }
 
-void vpPoseMixture::addAnywhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, double since)
+void vpPoseMixture::addAnywhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses)
 {
   if (likeliest().isSurprised()) {
-    m_logAnywhere = logSum(m_logAnywhere, logPut(hypotheses, since) +
-                                              static_cast<double>(frame.lamps.size()) * frame.logUniform);
+    m_logAnywhere = logSum(m_logAnywhere,
+                           logPut(hypotheses) + static_cast<double>(frame.lamps.size()) * frame.logUniform);
   }
 }
 
-double vpPoseMixture::logPut(const vpVlpHypotheses &hypotheses, double since) const
+double vpPoseMixture::logPut(const vpVlpHypotheses &hypotheses) const
 {
   const double off = likeliest().odometryIsOff(),
                untold = likeliest().filter.rolls() ? off + (1 - off) * hypotheses.rolling : 1; // by wheels
-  return std::log(hypotheses.relocation * since * untold);
+  return std::log(hypotheses.relocation * likeliest().since() * untold);
 }
 
 //! Whether two places are one: pose and velocity of the other are within what the first is uncertain by.

@@ -30,17 +30,16 @@ public:
   void follow(const vpLampFrame &frame, const vpVlpFilter &odometry);
   //! Whether the frame is so unlikely from all of them that a robot that was put elsewhere may explain it
   //! better.
-  bool mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, double since) const;
+  bool mayBeElsewhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses) const;
   //! Whether so much was told of the motion that camera and map may be off instead.
   bool mayBeOff(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses);
   //! Camera and map are less exact than they say: the latest frame under such claims. \param isFirst It is
   //! the first frame of the likeliest place as well.
   void addWider(vpPoseHypothesis place, const vpVlpHypotheses &hypotheses, bool isFirst);
-  //! The robot was put there with the latest frame. \param since s, since the frame before.
-  void addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place, const vpVlpHypotheses &hypotheses,
-                    double since);
+  //! The robot was put there with the latest frame.
+  void addElsewhere(const vpLampFrame &frame, vpPoseHypothesis place, const vpVlpHypotheses &hypotheses);
   //! It may have been put where the latest frame's lamps do not tell.
-  void addAnywhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, double since);
+  void addAnywhere(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses);
   //! Whether all are so uncertain that they mean nothing.
   bool lost() const;
   //! Likewise at a time to come (s), had the robot started or stopped since.
@@ -54,8 +53,8 @@ private:
   static constexpr double nowhere = -1e300; // logarithm of 0
 
   void compare(size_t lamp);
-  //! Log probability that the robot was put elsewhere in that time, wherever that is.
-  double logPut(const vpVlpHypotheses &hypotheses, double since) const;
+  //! Log probability that the robot was put elsewhere since the frame before, wherever that is.
+  double logPut(const vpVlpHypotheses &hypotheses) const;
   void reduce(const vpVlpHypotheses &hypotheses);
   void tell(const vpLampFrame &frame, const vpVlpHypotheses &hypotheses, vpVlpLocation &location) const;
   static bool isLost(const vpPoseHypothesis &place);

@@ -180,18 +180,17 @@ void vpVlpLocalizer::follow(vpVlpLocation &location, const std::vector<size_t> &
   if (attitudeIsFree(*this)) {
     placeMiddles(location.observations, m_rig, filter.pose().wMb.rotation());
   }
-  const double since = location.timestamp - filter.time();
   m_places->follow(
       m_scratch->frameOf(m_rig, m_map, location.observations, usable, location.timestamp, compensateShutter),
       filter);
-  const bool elsewhere = m_places->mayBeElsewhere(m_scratch->frame, hypotheses, since),
+  const bool elsewhere = m_places->mayBeElsewhere(m_scratch->frame, hypotheses),
              off = m_places->mayBeOff(m_scratch->frame, hypotheses);
   const bool tells = (elsewhere || off) && aloneIsGood();
   if (!tells) {
-    m_places->addAnywhere(m_scratch->frame, hypotheses, since);
+    m_places->addAnywhere(m_scratch->frame, hypotheses);
   } else {
     if (elsewhere) {
-      m_places->addElsewhere(m_scratch->frame, placeAt(alone, m_scratch->frame, true, 0), hypotheses, since);
+      m_places->addElsewhere(m_scratch->frame, placeAt(alone, m_scratch->frame, true, 0), hypotheses);
     }
     if (off) {
       m_places->addWider(placeAt(alone, m_scratch->frame, false, 1), hypotheses, false);
