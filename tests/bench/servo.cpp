@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -301,7 +302,7 @@ void spoofed(int seeds)
 {
   std::printf(
       "\n| two lamps give way to copies 36 cm beside | drives | arrived | stands after: median, longest, s "
-      "| largest error while it drives, mm | reason |\n|---|---|---|---|---|---|\n");
+      "| largest error while it drives, mm | reason (drives) |\n|---|---|---|---|---|---|\n");
   for (const bool odometry : {true, false}) {
     for (const double speed : {0.1, 0.2}) {
       std::vector<Spoofed> all(static_cast<size_t>(seeds));
@@ -312,12 +313,12 @@ void spoofed(int seeds)
       });
       std::vector<double> stood;
       double farthest = 0;
-      std::string reason = "-";
+      std::map<std::string, int> reasons; // and drives
       for (const Spoofed &one : all) {
         farthest = std::max(farthest, one.farthest);
         if (!std::isnan(one.stood)) {
           stood.push_back(one.stood);
-          reason = one.reason;
+          ++reasons[one.reason];
         }
       }
       std::printf("| %s odometry, %g m/s | %d | %zu |", odometry ? "with" : "without", speed, seeds,
@@ -327,7 +328,11 @@ void spoofed(int seeds)
       } else {
         std::printf(" %.2f, %.2f |", vpPercentile(stood, 0.5), vpPercentile(stood, 1));
       }
-      std::printf(" %.2f | %s |\n", 1000 * farthest, reason.c_str());
+      std::printf(" %.2f |", 1000 * farthest);
+      for (const auto &[reason, drives] : reasons) {
+        std::printf(" %s (%d)", reason.c_str(), drives);
+      }
+      std::printf(" |\n");
       std::fflush(stdout);
     }
   }

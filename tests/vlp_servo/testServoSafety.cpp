@@ -250,6 +250,7 @@ TEST(ServoSafety, NoLimitIsPassedWhateverIsWanted)
   std::mt19937_64 generator(3);
   std::normal_distribution<double> wild(0, 2);
   vpServoSafety safety(settings, limits, false);
+  EXPECT_EQ(safety.permit(0, fixAt(0, 0, 0)).share, 1);
   const double dt = 0.02;
   vpBaseVelocity before;
   for (int i = 0; i < 20000; ++i) {
@@ -265,6 +266,22 @@ TEST(ServoSafety, NoLimitIsPassedWhateverIsWanted)
         << change;
     EXPECT_TRUE(saturated || std::abs(now.w - before.w) <= settings.turnAcceleration * dt + 1e-9);
     before = now;
+  }
+}
+
+TEST(ServoSafety, WithoutAPermitItStandsAtOnce)
+{
+  vpServoSafety safety = driving();
+  for (int i = 0; i < 50; ++i) {
+    safety.limited({0.2, 0.5}, 0.02);
+  }
+  EXPECT_GT(safety.limited({0.2, 0.5}, 0.02).v, 0.15);
+  const vpVlpFix none;
+  EXPECT_EQ(safety.permit(0.02, none).share, 0);
+  for (const vpBaseVelocity wanted : {vpBaseVelocity{0.2, 0.5}, vpBaseVelocity()}) {
+    const vpBaseVelocity told = safety.limited(wanted, 0.02);
+    EXPECT_EQ(told.v, 0);
+    EXPECT_EQ(told.w, 0);
   }
 }
 

@@ -209,6 +209,7 @@ TEST(ServoSimulation, SpoofedPairBesideOdometryIsNotBelievedAndBringsItToAStandW
   vpServoLoopSettings settings;
   settings.safety.giveUp = 4; // s, longer than the place before stays known
   for (const std::uint64_t seed : {2, 3, 4}) {
+    settings.follower.reference.speed = seed == 2 ? 0.1 : 0.2;
     vpServoSimulation lamps(spoofedPair::spoofed(world(), 1.5), seed, onStartOf(slantedLine));
     vpVlpPose poses(lamps);
     vpServoLoop loop(lamps.robot(), poses, lamps, slantedLine, settings);
@@ -233,14 +234,14 @@ TEST(ServoSimulation, SpoofedPairBesideOdometryIsNotBelievedAndBringsItToAStandW
 TEST(ServoSimulation, SpoofedPairWithoutOdometryBringsItToAStandWithin300MsAndItSaysWhy)
 {
   vpServoLoopSettings settings;
-  settings.follower.reference.speed = 0.1;
+  settings.follower.reference.speed = 0.2;
   settings.safety.giveUp = 4;                   // s, longer than the place before stays known
   for (const double from : {1.5, 1.52, 1.54}) { // s, before a picture and in the midst of one
     vpServoSimulation lamps(spoofedPair::spoofed(world(), from), 2, onStartOf(slantedLine));
     spoofedPair::NoOdometry feed(lamps);
     vpVlpPose poses(feed);
     const vpServoRun run = vpServoLoop(lamps.robot(), poses, lamps, slantedLine, settings).run();
-    EXPECT_GT(fastest(lamps, 1.4, from), 0.08);
+    EXPECT_GT(fastest(lamps, 1.4, from), 0.15);
     EXPECT_LT(standsAfter(from, lamps), 0.3) << from;
     EXPECT_EQ(run.end, vpServoRun::End::failed);
     EXPECT_NE(run.reason.find("another place"), std::string::npos) << run.reason;

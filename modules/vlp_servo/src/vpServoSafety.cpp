@@ -241,12 +241,14 @@ bool vpServoSafety::leavesFence(const vpVlpFix &fix) const
 
 vpBaseVelocity vpServoSafety::limited(const vpBaseVelocity &wanted, double dt)
 {
-  vpBaseVelocity target;
-  if (std::isfinite(wanted.v) && std::isfinite(wanted.w)) {
-    target = m_limits.saturated(wanted);
-  } else {
+  if (!(std::isfinite(wanted.v) && std::isfinite(wanted.w))) {
     fail("the control law gave no number");
   }
+  if (!m_moving || !m_failure.empty()) {
+    m_command = vpBaseVelocity();
+    return m_command;
+  }
+  const vpBaseVelocity target = m_limits.saturated(wanted);
   const double turnStep = m_settings.turnAcceleration * dt;
   m_command.v = ramped(m_command.v, target.v, m_settings.acceleration * dt, m_settings.braking * dt);
   m_command.w = std::clamp(target.w, m_command.w - turnStep, m_command.w + turnStep);

@@ -87,7 +87,8 @@ public:
 
   /*!
     The command that is closest to \e wanted within limits of speed and acceleration, \e dt (s) after the one
-    before. One that is not finite becomes a stand, and ends the run.
+    before. Where the latest permit was none it is a stand, at once: the motors' lag is its ramp. So is one
+    that is not finite, which ends the run.
   */
   vpBaseVelocity limited(const vpBaseVelocity &wanted, double dt);
 
