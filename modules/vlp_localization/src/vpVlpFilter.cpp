@@ -224,8 +224,9 @@ void vpVlpFilter::update(const vpLampSight &lamp, const Predicted &predicted)
 }
 
 template <int Values>
-double vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
-                            const Eigen::Matrix<double, Values, Values> &R)
+Eigen::Matrix<double, Values, Values>
+vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
+                     const Eigen::Matrix<double, Values, Values> &R)
 {
   const Eigen::Index n = m_x.size();
   m_PH.resize(n, 3);
@@ -258,8 +259,7 @@ double vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<dou
     }
   }
   mirror();
-  return -0.5 *
-         (innovation.dot(inverse * innovation) + std::log(S.determinant()) + Values * std::log(2 * M_PI));
+  return S;
 }
 
 //! Makes the covariance symmetric, after what changed the columns of what is estimated.
@@ -298,10 +298,10 @@ void vpVlpFilter::carryAlong(Index first, const Eigen::Vector2d &shift)
   }
 }
 
-template double vpVlpFilter::measure<2>(const Derivative<2> &, const Eigen::Vector2d &,
-                                        const Eigen::Matrix2d &);
-template double vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
-                                        const Eigen::Matrix3d &);
+template Eigen::Matrix2d vpVlpFilter::measure<2>(const Derivative<2> &, const Eigen::Vector2d &,
+                                                 const Eigen::Matrix2d &);
+template Eigen::Matrix3d vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
+                                                 const Eigen::Matrix3d &);
 
 //! The pose in the state from there on.
 vpVlpFilter::Pose vpVlpFilter::poseOf(Index first) const

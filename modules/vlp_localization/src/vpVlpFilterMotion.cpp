@@ -125,14 +125,15 @@ void vpVlpFilter::move(double dt, bool accelerates)
 void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample)
 {
   const double dt = sample.timestamp - before.timestamp;
-  if (odometry == Odometry::followed) { // it starts or stops
-    m_P.block<2, 2>(vx, vx).diagonal().array() += vpMath::sqr(acceleration) * dt;
-    m_P(w, w) += vpMath::sqr(turnAcceleration) * dt;
-  }
   const Eigen::RowVector3d forward = Eigen::RowVector3d::UnitX(), sideways = Eigen::RowVector3d::UnitY(),
                            turning = Eigen::RowVector3d::UnitZ();
-  const double ahead = std::cos(m_x(wheels)), aside = std::sin(m_x(wheels)), scale = 1 + m_x(speedScale),
-               along = ahead * m_x(vx) + aside * m_x(vy), across = ahead * m_x(vy) - aside * m_x(vx);
+  const double ahead = std::cos(m_x(wheels)), aside = std::sin(m_x(wheels)), scale = 1 + m_x(speedScale);
+  if (odometry == Odometry::followed) { // it starts or stops, as wheels do: not sideways
+    const Eigen::Vector2d way(ahead, aside);
+    m_P.block<2, 2>(vx, vx) += vpMath::sqr(acceleration) * dt * way * way.transpose();
+    m_P(w, w) += vpMath::sqr(turnAcceleration) * dt;
+  }
+  const double along = ahead * m_x(vx) + aside * m_x(vy), across = ahead * m_x(vy) - aside * m_x(vx);
   Derivative<3> H;
   H.add(vx, scale * ahead * forward - aside * sideways);
   H.add(vy, scale * aside * forward + ahead * sideways);
@@ -144,17 +145,21 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   // An error that changes from sample to sample averages out over samples, however long they are.
   static const double nominal = 0.02; // s
   const double share = odometryShare * std::sqrt(nominal / std::max(dt, 1e-3));
+  const Eigen::Vector3d sigma(std::hypot(odometrySpeed, share * sample.v), odometrySpeed,
+                              std::hypot(odometryTurnRate, share * sample.w));
   // Where speeds change from sample to sample they do so within one.
   static const double within = 0.3; // share of the change, standard deviation
-  Eigen::Matrix3d R = Eigen::Matrix3d::Zero();
-  R(0, 0) = vpMath::sqr(odometrySpeed) + vpMath::sqr(share * sample.v) +
-            vpMath::sqr(within * (sample.v - before.v));
-  R(1, 1) = vpMath::sqr(odometrySpeed);
-  R(2, 2) = vpMath::sqr(odometryTurnRate) + vpMath::sqr(share * sample.w) +
-            vpMath::sqr(within * (sample.w - before.w));
+  const Eigen::Vector3d changes = within * Eigen::Vector3d(sample.v - before.v, 0, sample.w - before.w);
   const Eigen::Vector3d innovation(sample.v - scale * along, -across,
-                                   sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias));
-  m_leastOdometry = std::min(m_leastOdometry, measure<3>(H, innovation - this->aside(H), R));
+                                   sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias)),
+      seen = innovation - this->aside(H), noise = sigma.cwiseAbs2() + changes.cwiseAbs2();
+  Eigen::Matrix3d S = measure<3>(H, seen, noise.asDiagonal());
+  if (odometry == Odometry::measured) { // of a motion without changes
+    S.diagonal() -= changes.cwiseAbs2();
+  }
+  const double logDensity =
+      -0.5 * (seen.dot(S.inverse() * seen) + std::log(S.determinant()) + 3 * std::log(2 * M_PI));
+  m_leastOdometry = std::min(m_leastOdometry, logDensity);
 }
 
 void vpVlpFilter::advance(double time)

@@ -62,9 +62,9 @@ Score score(const vpLedRoi &roi, const cv::Mat_<unsigned char> &lines, double da
 int longestGap(const vpLedRoi &roi);
 
 /*!
-  Tells whether the picture's border cuts the region's lamp: it touches the border, or may go on beyond the
-  first or last line though it ends before it, by a dark gap no longer than the lamp shows elsewhere, and the
-  chords there do not close.
+  Sets cutAcross and cutAlong: whether the picture's border cuts the region's lamp. The region touches it, or
+  its lamp may go on beyond the first or last line though the region ends before that, by a dark gap no longer
+  than the lamp shows elsewhere, and the chords there do not close.
 */
 void markCuts(vpLedRoi &roi, const cv::Size &picture);
 

@@ -281,10 +281,11 @@ private:
   void standAside(const Eigen::Matrix<double, 9, 1> &path);
   void carryAlong(Index first, const Eigen::Vector2d &shift);
   void mirror();
-  //! \param R Covariance of what was measured. \return Log density of it.
+  //! \param R Covariance of what was measured. \return That of the innovation.
   template <int Values>
-  double measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
-                 const Eigen::Matrix<double, Values, Values> &R);
+  Eigen::Matrix<double, Values, Values> measure(const Derivative<Values> &H,
+                                                const Eigen::Matrix<double, Values, 1> &innovation,
+                                                const Eigen::Matrix<double, Values, Values> &R);
   void arc(double dt);
   void move(double dt, bool accelerates);
   void wander(double time);
@@ -317,8 +318,8 @@ private:
   double m_followed = -1e300;  // s, end of the interval whose odometry the velocity is
 };
 
-extern template double vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
-                                               const Eigen::Matrix3d &);
+extern template Eigen::Matrix3d vpVlpFilter::measure<3>(const Derivative<3> &, const Eigen::Vector3d &,
+                                                        const Eigen::Matrix3d &);
 
 END_VISP_NAMESPACE
 

@@ -29,7 +29,7 @@ struct VISP_EXPORT vpVlpHypotheses {
 
   // Whether it was put elsewhere, of which wheels that stand tell nothing.
   double relocation = 0.01; // 1/s
-  double rolling = 0.05;    // wheels that roll and are right roll on meanwhile
+  double rolling = 0.05;    // probability that wheels which roll, and are right, roll on while it is carried
   double reach = 0.1;       // m, of a step in x and y: bivariate Cauchy distribution
   double turn = 0.6;        // rad, of a turn: Cauchy distribution
   double floorStep = 0.01;  // m, in z: Cauchy distribution
