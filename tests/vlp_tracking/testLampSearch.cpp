@@ -40,6 +40,26 @@ int sightings(const Scene &scene, vpLampTracker &tracker, int first, int last, d
 const Lamp steady = {300, 240, 0};
 } // namespace
 
+// As a luminaire's shade does, which noise and motion show anew each time.
+TEST(LampSearch, LightThatFitsNoLampByOtherStripesEachTimeIsPassedOverUntilALampShinesThere)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  tracker.steadiness = 0.3; // s
+  const int until = 60, longest = static_cast<int>(10 * tracker.steadiness / frameTime) + 5;
+  int early = 0, late = 0, back = -1;
+  for (int k = 0; k < until + longest && back < 0; ++k) {
+    const Lamp light = {300, 240, k >= until ? 4400 : k % 2 == 0 ? 3000.0 : 3100.0};
+    const vpLampObservation *seen = scene.seen(tracker.track(scene.frame(k, with(three, light))), light);
+    early += seen != nullptr && k < 10;
+    late += seen != nullptr && k >= 15 && k < until;
+    back = k >= until && seen != nullptr && seen->id == "L4400" ? k : back;
+  }
+  EXPECT_GE(early, 8);
+  EXPECT_LE(late, 8); // of 45 frames
+  EXPECT_GE(back, until);
+}
+
 // A strip comes round every five frames, 30 of them a second.
 TEST(LampSearch, SteadyRegionIsPassedOverForAWhile)
 {

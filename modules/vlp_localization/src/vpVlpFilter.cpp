@@ -224,9 +224,9 @@ void vpVlpFilter::update(const vpLampSight &lamp, const Predicted &predicted)
 }
 
 template <int Values>
-Eigen::Matrix<double, Values, Values>
-vpVlpFilter::measure(const Derivative<Values> &H, const Eigen::Matrix<double, Values, 1> &innovation,
-                     const Eigen::Matrix<double, Values, Values> &R)
+Eigen::Matrix<double, Values, Values> vpVlpFilter::measure(const Derivative<Values> &H,
+                                                           const Eigen::Matrix<double, Values, 1> &innovation,
+                                                           const Eigen::Matrix<double, Values, Values> &R)
 {
   const Eigen::Index n = m_x.size();
   m_PH.resize(n, 3);

@@ -22,6 +22,12 @@ using vpLampBoxes::overlap;
 using vpLampBoxes::tells;
 using vpLampBoxes::widened;
 
+namespace
+{
+//! Overlap of boxes of the same light, which may hang higher or lower than the lamps by which it was moved.
+const double sameLight = 0.3;
+} // namespace
+
 //! Whether the lamp has its middle about there, and is as it was.
 bool vpLampTracker::reacquireAt(Track &track, const vpImage<unsigned char> &I, const vpImagePoint &place)
 {
@@ -201,9 +207,9 @@ void vpLampTracker::moveSteady(double time)
   moves.clear();
   auto at = [](const vpImagePoint &point) { return Complex(point.get_u(), point.get_v()); };
   for (const Track &track : m_tracks) {
-    if (track.taken) {
-      const Eigen::Vector2d &centre = track.seen.outline.centre;
-      moves.emplace_back(at(track.place.getCenter()), Complex(centre.x(), centre.y()));
+    if (track.taken) { // what is a pixel off moves them on and on
+      const Eigen::Vector2d &before = track.known.outline.centre, &centre = track.seen.outline.centre;
+      moves.emplace_back(Complex(before.x(), before.y()), Complex(centre.x(), centre.y()));
     } else if (m_observations.empty() && !track.astray) {
       moves.emplace_back(at(track.before), at(track.target->center()));
     }
@@ -233,28 +239,36 @@ void vpLampTracker::moveSteady(double time)
                  m_steady.end());
 }
 
-//! A region that tells nothing of any lamp. What has long been steady is trusted for as long again, up to a
-//! bound.
-void vpLampTracker::rememberSteady(const vpLampObservation &seen, double time)
+//! s, since when a region has been known for no lamp; now, where it was not.
+double vpLampTracker::noLampSince(const vpRect &box, double time) const
 {
-  static const double same = 0.5;
-  if (tells(seen)) {
-    return;
+  for (const Steady &steady : m_steady) {
+    time = overlap(steady.box, box) > sameLight ? std::min(time, steady.since) : time;
   }
-  const vpRect box = boxOf(seen.outline);
-  double since = time;
-  const auto others = std::partition(m_steady.begin(), m_steady.end(), [&box](const Steady &steady) {
-    return !(overlap(steady.box, box) > same);
-  });
-  for (auto before = others; before != m_steady.end(); ++before) {
-    since = std::min(since, before->since);
-  }
-  m_steady.erase(others, m_steady.end());
+  return time;
+}
+
+//! A region that tells nothing of any lamp. What has long been none is trusted for as long again, up to a
+//! bound.
+void vpLampTracker::rememberSteady(const vpRect &box, double since, bool cut, double time)
+{
+  m_steady.erase(
+      std::remove_if(m_steady.begin(), m_steady.end(),
+                     [&box](const Steady &steady) { return overlap(steady.box, box) > sameLight; }),
+      m_steady.end());
   static const double ofCut = 0.25; // a part of it: it may be a lamp that comes into sight
   static const double longest = 10; // times: a lamp that shone without a break may have begun to blink
   m_steady.push_back(
       {box, since,
-       time + (seen.cut ? ofCut : 1) * std::min(std::max(steadiness, time - since), longest * steadiness)});
+       time + (cut ? ofCut : 1) * std::min(std::max(steadiness, time - since), longest * steadiness)});
+}
+
+void vpLampTracker::rememberSteady(const vpLampObservation &seen, double time)
+{
+  if (!tells(seen)) {
+    const vpRect box = boxOf(seen.outline);
+    rememberSteady(box, noLampSince(box, time), seen.cut, time);
+  }
 }
 
 //! Where to look: around each target, where lamps are expected, and the strip whose turn it is.

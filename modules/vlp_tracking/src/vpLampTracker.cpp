@@ -97,8 +97,9 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   }
   for (size_t i = 0; i < m_observations.size(); ++i) {
     if (m_trackOf[i] >= 0) {
-      m_tracks[static_cast<size_t>(m_trackOf[i])].learn(m_observations[i], sure,
-                                                        detector.recognizer.minConfidence);
+      Track &track = m_tracks[static_cast<size_t>(m_trackOf[i])];
+      track.learn(m_observations[i], sure, detector.recognizer.minConfidence,
+                  noLampSince(track.place, frame.timestamp));
     }
   }
   sortByArea();
@@ -288,14 +289,21 @@ void vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
   m_tracks.push_back(std::move(track));
 }
 
-//! Lamps that were not seen for long, or that left the picture.
+//! Lamps that were not seen for long, or that left the picture, and what is none.
 void vpLampTracker::bury(double time)
 {
+  auto isStranger = [&](const Track &track) { return time - track.strangerSince > steadiness; };
+  for (const Track &track : m_tracks) {
+    if (isStranger(track)) {
+      rememberSteady(track.place, track.strangerSince, false, time);
+    }
+  }
   m_tracks.erase(std::remove_if(m_tracks.begin(), m_tracks.end(),
                                 [&](const Track &track) {
                                   const vpRect window = track.astray ? track.place : track.target->window();
                                   const bool gone = !(window.getWidth() > 0 && window.getHeight() > 0);
-                                  return time - track.seenLast > patience || (gone && !track.taken);
+                                  return time - track.seenLast > patience || (gone && !track.taken) ||
+                                         isStranger(track);
                                 }),
                  m_tracks.end());
 }

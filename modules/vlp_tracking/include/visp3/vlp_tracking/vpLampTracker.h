@@ -36,7 +36,8 @@ BEGIN_VISP_NAMESPACE
 
   Steady regions (windows, lamps without stripes) are found by the search and not followed. For a while their
   places are left out of the search, moved along with the lamps: for as long as they have been there, ten
-  times `steadiness` at most. Where a lamp is expected, they are looked at.
+  times `steadiness` at most. Where a lamp is expected, they are looked at. So it is with regions that fit no
+  lamp of the map for as long as `steadiness`, each time by other stripes, as the shade of a luminaire does.
 
   \code
   vpLampTracker tracker(rig, map);
@@ -102,6 +103,8 @@ private:
   void searchAll(const vpVlpFrame &frame);
   size_t lampsInSight() const;
   void moveSteady(double time);
+  double noLampSince(const vpRect &box, double time) const;
+  void rememberSteady(const vpRect &box, double since, bool cut, double time);
   void rememberSteady(const vpLampObservation &seen, double time);
   void assign();
   void followReacquired(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
