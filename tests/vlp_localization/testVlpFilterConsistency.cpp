@@ -342,22 +342,6 @@ TEST(VlpFilterConsistency, ChangeOfTheWheelsSpeedIsNoReasonToBelieveInASteadyMot
   EXPECT_LT(density(Odometry::measured, 0.07), density(Odometry::followed, 0.07) - 20); // nats
 }
 
-TEST(VlpFilterConsistency, WheelsDoNotRollSideways)
-{
-  Drive drive(1, wheeledAt);
-  vpVlpFilter filter(drive.rig());
-  filter.odometryHeading = 0;
-  filter.odometry = vpVlpFilter::Odometry::followed;
-  filter.start(drive.truth(0), 0);
-  for (double t = 0; t < 1.01; t += 0.02) {
-    filter.addOdometry({t, 0.1, 0});
-  }
-  filter.advance(1);
-  // Ahead a speed is as good as its last sample, sideways as all of them.
-  EXPECT_GT(std::sqrt(filter.velocityCovariance()(0, 0)), filter.odometrySpeed);
-  EXPECT_LT(std::sqrt(filter.velocityCovariance()(1, 1)), 0.2 * filter.odometrySpeed);
-}
-
 TEST(VlpFilterConsistency, SamplesThatAreNotLaterAreLeftOut)
 {
   Drive drive(1, wheeledAt);

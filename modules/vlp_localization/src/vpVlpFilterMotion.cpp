@@ -127,13 +127,14 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   const double dt = sample.timestamp - before.timestamp;
   const Eigen::RowVector3d forward = Eigen::RowVector3d::UnitX(), sideways = Eigen::RowVector3d::UnitY(),
                            turning = Eigen::RowVector3d::UnitZ();
-  const double ahead = std::cos(m_x(wheels)), aside = std::sin(m_x(wheels)), scale = 1 + m_x(speedScale);
-  if (odometry == Odometry::followed) { // it starts or stops, as wheels do: not sideways
-    const Eigen::Vector2d way(ahead, aside);
-    m_P.block<2, 2>(vx, vx) += vpMath::sqr(acceleration) * dt * way * way.transpose();
+  const bool follows = odometry == Odometry::followed;
+  const double starts = vpMath::sqr(acceleration) * dt; // or stops
+  if (follows) {
+    m_P.block<2, 2>(vx, vx).diagonal().array() += starts;
     m_P(w, w) += vpMath::sqr(turnAcceleration) * dt;
   }
-  const double along = ahead * m_x(vx) + aside * m_x(vy), across = ahead * m_x(vy) - aside * m_x(vx);
+  const double ahead = std::cos(m_x(wheels)), aside = std::sin(m_x(wheels)), scale = 1 + m_x(speedScale),
+               along = ahead * m_x(vx) + aside * m_x(vy), across = ahead * m_x(vy) - aside * m_x(vx);
   Derivative<3> H;
   H.add(vx, scale * ahead * forward - aside * sideways);
   H.add(vy, scale * aside * forward + ahead * sideways);
@@ -154,9 +155,8 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias)),
       seen = innovation - this->aside(H), noise = sigma.cwiseAbs2() + changes.cwiseAbs2();
   Eigen::Matrix3d S = measure<3>(H, seen, noise.asDiagonal());
-  if (odometry == Odometry::measured) { // of a motion without changes
-    S.diagonal() -= changes.cwiseAbs2();
-  }
+  // A steady motion has no changes, and wheels that start or stop do not do so sideways.
+  S.diagonal() -= follows ? Eigen::Vector3d(0, starts, 0) : Eigen::Vector3d(changes.cwiseAbs2());
   const double logDensity =
       -0.5 * (seen.dot(S.inverse() * seen) + std::log(S.determinant()) + 3 * std::log(2 * M_PI));
   m_leastOdometry = std::min(m_leastOdometry, logDensity);
