@@ -63,10 +63,10 @@ model() # CORE: cycles that one run through each block takes, one line each, wit
     awk '/^Total Cycles:/ { print $3 / 100 }'
 }
 
-count() # SIZE whole|tracked: a row of the table
+count() # SIZE whole|tracked CEILING: a row of the table
 {
   qemu-aarch64 -cpu cortex-a53 -L "$sysroot" -plugin "$work/libcountBlocks.so,out=$work/blocks" \
-    "$program" "$1" "$2" "$frames" >"$work/said" 2>&1 || { cat "$work/said" >&2; exit 1; }
+    "$program" "$1" "$2" "$frames" "$3" >"$work/said" 2>&1 || { cat "$work/said" >&2; exit 1; }
   if ! grep -q "$frames frames, $frames with a position" "$work/said" || ! grep -q '^entries 1 returns 1 ' "$work/blocks"; then
     cat "$work/said" >&2
     head -n 1 "$work/blocks" >&2
@@ -87,7 +87,7 @@ count() # SIZE whole|tracked: a row of the table
   paste "$work/cycles53" "$work/cycles55" "$work/common" |
     awk -v frames="$frames" -v all="$instructions" -v conditions="$conditions" -v mispredicted="$mispredicted" \
       -v missed1="$missed1" -v missed2="$missed2" -v level2=$level2 -v memory=$memory -v branch=$branch -v clock=$clock \
-      -v what="$1, $([ "$2" = whole ] && echo "whole frame" || echo tracked)" '
+      -v what="$1, $([ "$2" = whole ] && echo "whole frame" || echo tracked)$([ "$3" = plain ] || echo ", $3 ceiling")" '
       { instructions += $3; a53 += $1 * $4; a55 += $2 * $4 }
       END {
         a53 *= all / instructions
@@ -107,6 +107,8 @@ echo
 echo "| frames | instructions | cycles, A55 | cycles, A53 | branches mispredicted | lines missed in L1, L2 | cycles of all that | instructions a cycle | ms |"
 echo "|---|---|---|---|---|---|---|---|---|"
 for size in 800x600 2048x1536; do
-  count "$size" whole
-  count "$size" tracked
+  for ceiling in plain mixed; do
+    count "$size" whole "$ceiling"
+    count "$size" tracked "$ceiling"
+  done
 done

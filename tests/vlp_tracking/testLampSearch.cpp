@@ -60,6 +60,17 @@ TEST(LampSearch, LightThatFitsNoLampByOtherStripesEachTimeIsPassedOverUntilALamp
   EXPECT_GE(back, until);
 }
 
+TEST(LampSearch, LampThatTheMapDoesNotHaveIsFollowedAllTheSame)
+{
+  for (const double pace : {0.0, 2.0}) { // px a frame
+    const Scene scene;
+    vpLampTracker tracker = scene.tracker();
+    tracker.steadiness = 0.3; // s
+    const Lamp unknown = {250, 240, 3000};
+    EXPECT_GE(sightings(scene, tracker, 0, 45, pace, with(three, unknown), unknown), 44) << pace;
+  }
+}
+
 // A strip comes round every five frames, 30 of them a second.
 TEST(LampSearch, SteadyRegionIsPassedOverForAWhile)
 {

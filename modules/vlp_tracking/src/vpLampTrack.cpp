@@ -39,12 +39,12 @@ bool vpLampTracker::Track::isElsewhere(const vpLampObservation &lamp) const
          (pwm && std::abs(now.frequency - past.frequency) > off * now.frequencySigma);
 }
 
-//! A lamp that is recognised for certain may be reacquired in the next frame. What fits none, and is not as
-//! it was in the frame before, is a stranger.
+//! A lamp that is recognised for certain may be reacquired in the next frame. What fits none, shows
+//! no word, and is not as it was in the frame before, is a stranger.
 void vpLampTracker::Track::learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence,
                                  double noLampSince)
 {
-  if (!lamp.candidates.empty() || found) {
+  if (!lamp.candidates.empty() || !lamp.features.chips.empty() || found) {
     strangerSince = never;
   } else if (vpLedIdEvidence::tells(lamp.features)) {
     strangerSince = std::min(strangerSince, noLampSince);

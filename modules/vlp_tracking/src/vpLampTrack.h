@@ -37,7 +37,8 @@ struct vpLampTracker::Track {
   //! Whether a region tells too little of its own to be the same lamp, far from where that blinked last or
   //! hardly as that did.
   bool isElsewhere(const vpLampObservation &lamp) const;
-  //! \param enough Frames that agree on it. \param noLampSince s: this frame's time, or earlier.
+  //! \param enough Frames that agree on it. \param noLampSince s: this frame's time, or earlier; never, where
+  //! it was not tried whether it is as it was.
   void learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence, double noLampSince);
   void remember(const vpImage<unsigned char> &I);
   bool shown() const { return !look.empty(); }

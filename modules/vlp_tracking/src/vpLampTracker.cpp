@@ -99,7 +99,7 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
     if (m_trackOf[i] >= 0) {
       Track &track = m_tracks[static_cast<size_t>(m_trackOf[i])];
       track.learn(m_observations[i], sure, detector.recognizer.minConfidence,
-                  noLampSince(track.place, frame.timestamp));
+                  m_inSight >= needed ? noLampSince(track.place, frame.timestamp) : Track::never);
     }
   }
   sortByArea();
