@@ -248,8 +248,7 @@ double vpLampTracker::noLampSince(const vpRect &box, double time) const
   return time;
 }
 
-//! A region that tells nothing of any lamp. What has long been none is trusted for as long again, up to a
-//! bound.
+//! A region that is no lamp. What has long been none is trusted for as long again, up to a bound.
 void vpLampTracker::rememberSteady(const vpRect &box, double since, bool cut, double time)
 {
   m_steady.erase(
