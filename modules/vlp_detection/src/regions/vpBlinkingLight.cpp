@@ -30,32 +30,38 @@ int longestGap(const std::vector<vpLitBand> &bands)
 }
 
 //! The runs that hang together with a seed: no more than \e reach from each other, px, and a dark gap.
+//! \param runs Band by band, from left to right.
 std::vector<vpLitRun> connected(const std::vector<vpLitRun> &runs, const std::vector<vpLitBand> &bands,
                                 const cv::Rect &seed, int reach)
 {
   const int lines = reach + longestGap(bands);
-  auto near = [&](const vpLitRun &a, const vpLitRun &b) {
-    return bands[b.band].first - bands[a.band].last <= lines &&
-           bands[a.band].first - bands[b.band].last <= lines && b.first - a.last <= reach &&
-           a.first - b.last <= reach;
-  };
   std::vector<vpLitRun> found;
-  std::vector<char> taken(runs.size(), 0);
-  for (size_t i = 0; i < runs.size(); ++i) {
-    const vpLitRun &run = runs[i];
+  std::vector<std::vector<vpLitRun>> open(bands.size()); // the rest
+  for (const vpLitRun &run : runs) {
     const cv::Rect box(run.first, bands[run.band].first, run.last - run.first + 1,
                        bands[run.band].last - bands[run.band].first + 1);
-    if ((box & seed).area() > 0) {
-      taken[i] = 1;
-      found.push_back(run);
-    }
+    ((box & seed).area() > 0 ? found : open[run.band]).push_back(run);
   }
+  // Takes those of a band that are near a run. False: the band is too far off, and so is the next one.
+  const auto take = [&](const vpLitRun &run, size_t band) {
+    if (bands[band].first - bands[run.band].last > lines ||
+        bands[run.band].first - bands[band].last > lines) {
+      return false;
+    }
+    std::vector<vpLitRun> &there = open[band];
+    const auto first = std::lower_bound(there.begin(), there.end(), run.first - reach,
+                                        [](const vpLitRun &other, int x) { return other.last < x; }),
+               end = std::lower_bound(first, there.end(), run.last + reach + 1,
+                                      [](const vpLitRun &other, int x) { return other.first < x; });
+    found.insert(found.end(), first, end);
+    there.erase(first, end);
+    return true;
+  };
   for (size_t k = 0; k < found.size(); ++k) {
-    for (size_t i = 0; i < runs.size(); ++i) {
-      if (taken[i] == 0 && near(found[k], runs[i])) {
-        taken[i] = 1;
-        found.push_back(runs[i]);
-      }
+    const vpLitRun run = found[k]; // a copy: they move as more are found
+    for (size_t band = run.band; band < bands.size() && take(run, band); ++band) {
+    }
+    for (size_t band = run.band; band > 0 && take(run, band - 1); --band) {
     }
   }
   return found;
