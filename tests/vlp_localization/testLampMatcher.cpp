@@ -281,7 +281,9 @@ TEST(LampMatcher, AMirroredWorldIsHardlyEverAPlaceOfTheMap)
     const vpLampMatch match = matcher.match(view.observations, view.all());
     unique += match.outcome == Outcome::unique;
   }
-  EXPECT_LE(unique, 3); // rows of lamps look the same in a mirror
+  // Rows of lamps look the same in a mirror. Were it one view in a hundred, more than 7 came once in 80
+  // times.
+  EXPECT_LE(unique, 7);
 }
 
 TEST(LampMatcher, ChoosesAmongSeveralIdentifiersOfARegion)
