@@ -5,6 +5,7 @@
 // Lamps that share an identifier, and reflections, are told apart by geometry: right where one place explains
 // the picture, a refusal where several do, and never wrong.
 
+#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
