@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds Release as far as tests use it and runs every test.
+# Installs what is missing, builds Release as far as tests use it and runs every test but those with a label that ends in -slow.
 # VLP_INPUT_IMAGE_PATH: the folder of real pictures that tests/real looks at; without it those tests are skipped.
 set -euo pipefail
 
@@ -16,7 +16,7 @@ bash cmake/install-dependencies.sh
 cmake --preset release
 cmake --build --preset release --target tested
 status=0
-ctest --preset release "$@" || status=$?
+ctest --preset release -LE '-slow$' "$@" || status=$?
 # Every test names each picture that it uses; several use the same.
 used=$(sed -n 's/.*real pictures used: 1 //p' build/release/Testing/Temporary/LastTest.log | sort -u | wc -l)
 echo "real pictures used: $used"

@@ -258,14 +258,14 @@ TEST_F(Faults, MemoryThatEnds)
   }
 }
 
-TEST_F(Faults, SlowMemoryThatEnds)
+TEST_F(Faults, MemoryThatEndsLaterSlow)
 {
   for (const Writer &writer : {simulate(), locate(), overlay(), evaluate(), shutter()}) {
     endMemory(writer, 40);
   }
 }
 
-TEST_F(Faults, SlowEachCallOfEachProgram)
+TEST_F(Faults, EachCallOfEachProgramSlow)
 {
   constexpr int more = 8; // than most of them make of a kind; a program runs once for each
   for (const Writer &writer : writers()) {

@@ -302,17 +302,17 @@ TEST(FreeAttitude, Refuses)
               HasSubstr("no pose within 60 degrees of the vertical sees the 3 lamps"));
 }
 
-TEST(FreeAttitude, SlowConsistentWithImagePoints)
+TEST(FreeAttitude, ConsistentWithImagePointsSlow)
 {
   expectFreeAttitudeConsistent(41, {3e-4, 0, {0, 0, 0}, {0, 0, 0}}, 4, 0.2);
 }
 
-TEST(FreeAttitude, SlowConsistentWithMap)
+TEST(FreeAttitude, ConsistentWithMapSlow)
 {
   expectFreeAttitudeConsistent(42, {3e-4, 0.003, {0, 0, 0}, {0, 0, 0}}, 4, 0.2);
 }
 
-TEST(FreeAttitude, SlowConsistentWithWordOfTheRig)
+TEST(FreeAttitude, ConsistentWithWordOfTheRigSlow)
 {
   expectFreeAttitudeConsistent(44, {5e-4, 0.002, {0.002, 0.001, 0.003}, {0.004, 0.002, 0.003}}, 6, 0);
 }
