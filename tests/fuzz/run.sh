@@ -2,15 +2,17 @@
 # Builds the programs of libFuzzer (preset fuzz, clang) and runs them in rounds, at most half an hour of each at a time.
 #   bash tests/fuzz/run.sh [SECONDS] [TARGET...]   default: 60 s, shared by all targets
 #   bash tests/fuzz/run.sh 0                       only the table: what all runs so far took and reached
-# VLP_FUZZ_BUILT=1 runs them as they are built, beside work on the code. Corpora grow in build/fuzz/corpus/<target>, and
-# each run adds a line to build/fuzz/runs.csv. What breaks a target is left in build/fuzz/found/<target>: mend the code, and
-# move the file to tests/fuzz/findings/<target>.
+# VLP_FUZZ_BUILT=1 runs them as they are built, beside work on the code, which may stop them for minutes. Corpora grow in
+# build/fuzz/corpus/<target>, and each run adds a line to build/fuzz/runs.csv. What breaks a target is left in
+# build/fuzz/found/<target>: mend the code, and move the file to tests/fuzz/findings/<target>.
 # Exit code: 0 nothing was found, 1 something was.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 export OPENCV_IO_MAX_IMAGE_PIXELS=$((1 << 26)) # or a header of a few bytes makes it ask for 8 GB, more than -rss_limit_mb
 
 seconds=${1:-60}
+longest=20 # s by the clock, of one input
+[ -z "${VLP_FUZZ_BUILT:-}" ] || longest=600
 targets=("${@:2}")
 runs=build/fuzz/runs.csv
 
@@ -43,7 +45,7 @@ run() # TARGET SECONDS
   log=$found/log.txt
   mkdir -p "$corpus" "$found"
   TIMEFORMAT='%U %S'
-  { time TMPDIR=$scratch build/fuzz/bin/"fuzz_$target" -max_total_time="$2" -timeout=20 -rss_limit_mb=2048 -max_len=4096 \
+  { time TMPDIR=$scratch build/fuzz/bin/"fuzz_$target" -max_total_time="$2" -timeout="$longest" -rss_limit_mb=2048 -max_len=4096 \
       -print_final_stats=1 "${options[@]}" ${words:+-dict=tests/fuzz/dictionaries/$words.dict} -artifact_prefix="$found/" \
       "$corpus" "build/fuzz/seeds/$target" >"$log" 2>&1; } 2>"$scratch/cpu" || status=1
   local cpu executed edges all
