@@ -41,13 +41,12 @@ bool vpLampTracker::Track::isElsewhere(const vpLampObservation &lamp) const
 
 //! A lamp that is recognised for certain may be reacquired in the next frame. What fits none, shows
 //! no word, and is not as it was in the frame before, is a stranger.
-void vpLampTracker::Track::learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence,
-                                 double noLampSince)
+void vpLampTracker::Track::learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence)
 {
   if (!lamp.candidates.empty() || !lamp.features.chips.empty() || found) {
-    strangerSince = never;
+    strange = 0;
   } else if (vpLedIdEvidence::tells(lamp.features)) {
-    strangerSince = std::min(strangerSince, noLampSince);
+    ++strange;
   }
   const bool decided = lamp.candidates.size() <= 1 && lamp.confidence >= minConfidence;
   sure = decided && evidence.frames() >= enough;

@@ -5,7 +5,6 @@
 #ifndef vpLampTrack_h
 #define vpLampTrack_h
 
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -15,19 +14,17 @@ BEGIN_VISP_NAMESPACE
 
 //! A lamp that is followed.
 struct vpLampTracker::Track {
-  static constexpr double never = std::numeric_limits<double>::infinity();
-
   unsigned int number = 0;
   std::unique_ptr<vpTargetTracker> target;
   vpLedIdEvidence evidence;
-  vpRect window;                // px, where it is expected in the frame at hand
-  vpImagePoint before;          // px, where its target was in the frame before
-  double seenLast = 0;          // s
-  vpRect told;                  // px, where it blinked last
-  double strangerSince = never; // s, from when on it has fitted no lamp of the map
-  bool taken = false;           // by an observation of the frame at hand
-  vpRect place;                 // px, where it was seen last
-  bool astray = false; // its target is another lamp, which looks the same: it is waited for at its place
+  vpRect window;            // px, where it is expected in the frame at hand
+  vpImagePoint before;      // px, where its target was in the frame before
+  double seenLast = 0;      // s
+  vpRect told;              // px, where it blinked last
+  unsigned int strange = 0; // frames in a row in which it fitted no lamp of the map
+  bool taken = false;       // by an observation of the frame at hand
+  vpRect place;             // px, where it was seen last
+  bool astray = false;      // its target is another lamp, which looks the same: it is waited for at its place
   std::vector<unsigned char> look; // pixels of the place, line by line
   vpLampObservation known;         // as it was seen last,
   bool sure = false;               // and whether it may be reacquired
@@ -37,9 +34,8 @@ struct vpLampTracker::Track {
   //! Whether a region tells too little of its own to be the same lamp, far from where that blinked last or
   //! hardly as that did.
   bool isElsewhere(const vpLampObservation &lamp) const;
-  //! \param enough Frames that agree on it. \param noLampSince s: this frame's time, or earlier; never, where
-  //! it was not tried whether it is as it was.
-  void learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence, double noLampSince);
+  //! \param enough Frames that agree on it.
+  void learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence);
   void remember(const vpImage<unsigned char> &I);
   bool shown() const { return !look.empty(); }
   bool showsAgain(const vpImage<unsigned char> &I) const;

@@ -98,8 +98,12 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
   for (size_t i = 0; i < m_observations.size(); ++i) {
     if (m_trackOf[i] >= 0) {
       Track &track = m_tracks[static_cast<size_t>(m_trackOf[i])];
-      track.learn(m_observations[i], sure, detector.recognizer.minConfidence,
-                  m_inSight >= needed ? noLampSince(track.place, frame.timestamp) : Track::never);
+      track.learn(m_observations[i], sure, detector.recognizer.minConfidence);
+      if (m_inSight < needed) { // it was not tried whether it is as it was
+        track.strange = 0;
+      } else if (track.strange > 0 && noLampSince(track.place, frame.timestamp) < frame.timestamp) {
+        track.strange += sure;
+      }
     }
   }
   sortByArea();
@@ -292,10 +296,10 @@ void vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
 //! Lamps that were not seen for long, or that left the picture, and what is none.
 void vpLampTracker::bury(double time)
 {
-  auto isStranger = [&](const Track &track) { return time - track.strangerSince > steadiness; };
+  auto isStranger = [this](const Track &track) { return track.strange > sure; };
   for (const Track &track : m_tracks) {
     if (isStranger(track)) {
-      rememberSteady(track.place, track.strangerSince, false, time);
+      rememberSteady(track.place, noLampSince(track.place, time), false, time);
     }
   }
   m_tracks.erase(std::remove_if(m_tracks.begin(), m_tracks.end(),
