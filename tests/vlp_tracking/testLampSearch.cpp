@@ -92,6 +92,32 @@ TEST(LampSearch, SteadyRegionIsPassedOverForAWhile)
   }
 }
 
+// So that no frame takes much longer than others.
+TEST(LampSearch, SteadyRegionsAreLookedAtAgainOneAtATimeAndAllOfThem)
+{
+  const Scene scene;
+  vpLampTracker tracker = scene.tracker();
+  tracker.steadiness = 0.3; // s
+  std::vector<Lamp> lamps = three;
+  std::vector<Lamp> lights;
+  for (const double u : {230.0, 300.0, 370.0}) {
+    lights.push_back({u, 240, 0});
+    lamps = with(lamps, lights.back());
+  }
+  std::vector<int> looks(lights.size(), 0);
+  for (int k = 0; k < 60; ++k) {
+    const std::vector<vpLampObservation> &all = tracker.track(scene.frame(k, lamps));
+    int atOnce = 0;
+    for (size_t i = 0; k >= 10 && i < lights.size(); ++i) {
+      const bool seen = scene.seen(all, lights[i]) != nullptr;
+      looks[i] += seen ? 1 : 0;
+      atOnce += seen ? 1 : 0;
+    }
+    EXPECT_LE(atOnce, 1) << "frame " << k;
+  }
+  EXPECT_THAT(looks, testing::Each(testing::Ge(1)));
+}
+
 TEST(LampSearch, NewLampIsFoundBesideASteadyRegionAtOnceAndInPlaceOfOneOnceThatIsForgotten)
 {
   const Lamp beside = {300, 120, 4400}, instead = {steady.u, steady.v, 4400};

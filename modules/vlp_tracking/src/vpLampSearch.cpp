@@ -111,8 +111,10 @@ void vpLampTracker::search(const vpVlpFrame &frame)
     known.push_back(around(boxOf(lamp.outline), beyond));
     noise = std::max(noise, lamp.noise);
   }
+  const size_t strip = m_searched.size() - 1;
+  askAgain(m_searched[strip], frame.timestamp);
   for (const Steady &each : m_steady) {
-    if (each.until >= frame.timestamp) {
+    if (!each.asked) {
       steady.push_back(around(each.box, beyondSteady));
     }
   }
@@ -128,7 +130,6 @@ void vpLampTracker::search(const vpVlpFrame &frame)
                          return window.isInside({lamp.outline.centre.y(), lamp.outline.centre.x()});
                        });
   };
-  const size_t strip = m_searched.size() - 1;
   for (size_t w = 0; w < strip; ++w) {
     static const double middle = -0.25; // of an expected window, which the lamp fills
     const bool target = w < m_tracks.size();
@@ -234,9 +235,10 @@ void vpLampTracker::moveSteady(double time)
     const Complex moved = to + turn * (at(steady.box.getCenter()) - from);
     steady.box.moveCenter(moved.real(), moved.imag());
   }
-  m_steady.erase(std::remove_if(m_steady.begin(), m_steady.end(), // was looked for, and not seen again
-                                [&](const Steady &steady) { return steady.until + patience < time; }),
-                 m_steady.end());
+  m_steady.erase(
+      std::remove_if(m_steady.begin(), m_steady.end(), // was looked for, and not seen again
+                     [&](const Steady &steady) { return steady.asked && steady.until + patience < time; }),
+      m_steady.end());
 }
 
 //! s, since when a region has been known for no lamp; now, where it was not.
@@ -246,6 +248,23 @@ double vpLampTracker::noLampSince(const vpRect &box, double time) const
     time = overlap(steady.box, box) > sameLight ? std::min(time, steady.since) : time;
   }
   return time;
+}
+
+//! Of the regions in a strip whose time is over that one is looked at again whose time was over first: so no
+//! frame takes much longer than others.
+void vpLampTracker::askAgain(const vpRect &strip, double time)
+{
+  Steady *next = nullptr;
+  for (Steady &steady : m_steady) {
+    if (!steady.asked && steady.until < time && strip.isInside(steady.box.getCenter()) &&
+        (next == nullptr || steady.until < next->until)) {
+      next = &steady;
+    }
+  }
+  if (next != nullptr) {
+    next->asked = true;
+    next->until = time;
+  }
 }
 
 //! A region that is no lamp. What has long been none is trusted for as long again, up to a bound.

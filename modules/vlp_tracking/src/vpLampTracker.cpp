@@ -89,7 +89,7 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
     } else if (m_trackOf[i] >= 0) {
       follow(m_tracks[static_cast<size_t>(m_trackOf[i])], m_observations[i], frame);
     } else if (tells(m_observations[i])) {
-      bear(m_observations[i], frame);
+      m_trackOf[i] = bear(m_observations[i], frame);
     }
   }
   if (m_observations.size() > reacquired) { // else all is known as it is
@@ -273,16 +273,17 @@ std::unique_ptr<vpTargetTracker> vpLampTracker::targetAt(const vpImage<unsigned 
   return target;
 }
 
-void vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
+//! \return The new track's index; -1 where nothing can be followed.
+int vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
 {
   const vpRect box = inside(boxOf(seen.outline), frame.I);
   if (box.getWidth() < 4 || box.getHeight() < 4) {
-    return;
+    return -1;
   }
   Track track;
   track.target = targetAt(frame.I, box);
   if (!track.target) {
-    return;
+    return -1;
   }
   track.number = ++m_born;
   track.evidence.add(seen.features);
@@ -291,6 +292,7 @@ void vpLampTracker::bear(vpLampObservation &seen, const vpVlpFrame &frame)
   track.taken = true;
   seen.track = track.number;
   m_tracks.push_back(std::move(track));
+  return static_cast<int>(m_tracks.size()) - 1;
 }
 
 //! Lamps that were not seen for long, or that left the picture, and what is none.

@@ -88,7 +88,8 @@ private:
   struct Scratch;
   struct Steady {
     vpRect box;                  // px, in the last frame
-    double since = 0, until = 0; // s: seen first, and looked at again
+    double since = 0, until = 0; // s: seen first, and to be looked at again
+    bool asked = false;          // whether it was
   };
 
   void setWindows(const vpVlpFrame &frame, const std::vector<vpRect> &expected);
@@ -104,6 +105,7 @@ private:
   void searchAll(const vpVlpFrame &frame);
   size_t lampsInSight() const;
   void moveSteady(double time);
+  void askAgain(const vpRect &strip, double time);
   double noLampSince(const vpRect &box, double time) const;
   void rememberSteady(const vpRect &box, double since, bool cut, double time);
   void rememberSteady(const vpLampObservation &seen, double time);
@@ -112,7 +114,7 @@ private:
   void setRight(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
   void follow(Track &track, vpLampObservation &seen, const vpVlpFrame &frame);
   std::unique_ptr<vpTargetTracker> targetAt(const vpImage<unsigned char> &I, const vpRect &box) const;
-  void bear(vpLampObservation &seen, const vpVlpFrame &frame);
+  int bear(vpLampObservation &seen, const vpVlpFrame &frame);
   void bury(double time);
 
   vpVlpRig m_rig;
