@@ -80,7 +80,6 @@ std::vector<Setting> settings()
       filtered("startTurn", &F::startTurn),
       filtered("startVelocity", &F::startVelocity),
       filtered("startTurnRate", &F::startTurnRate),
-      filtered("odometryWay", &F::odometryWay),
       filtered("odometrySpeed", &F::odometrySpeed),
       filtered("odometryShare", &F::odometryShare),
       filtered("odometryTurnRate", &F::odometryTurnRate),

@@ -135,45 +135,25 @@ void vpVlpFilter::useOdometry(const vpOdometry &before, const vpOdometry &sample
   }
   const double ahead = std::cos(m_x(wheels)), aside = std::sin(m_x(wheels)), scale = 1 + m_x(speedScale),
                along = ahead * m_x(vx) + aside * m_x(vy), across = ahead * m_x(vy) - aside * m_x(vx);
-  // An error that changes from sample to sample averages out over samples, however long they are.
-  static const double nominal = 0.02; // s
-  const double share = odometryShare * std::sqrt(nominal / std::max(dt, 1e-3));
-  // Where speeds change from sample to sample they do so within one.
-  static const double within = 0.3; // share of the change, standard deviation
-  const Eigen::Vector3d changes = within * Eigen::Vector3d(sample.v - before.v, 0, sample.w - before.w);
-
-  // What a sample keeps back of a tick the next one tells: it is the way that is measured, not the speed.
-  if (m_followed != before.timestamp) {
-    m_x(rolled) = 0;
-    m_P.row(rolled).setZero();
-    m_P.col(rolled).setZero();
-    m_P(rolled, rolled) = vpMath::sqr(odometryWay);
-  }
-  auto carry = [&](auto &&P) {
-    P.row(rolled) += dt * (scale * (ahead * P.row(vx) + aside * P.row(vy) + across * P.row(wheels)) +
-                           along * P.row(speedScale));
-  };
-  carry(m_P);
-  carry(m_P.transpose());
-  if (m_aside) {
-    carry(m_offset);
-  }
-  m_x(rolled) += dt * (scale * along - sample.v);
-  m_P(rolled, rolled) += vpMath::sqr(dt) * (vpMath::sqr(share * sample.v) + vpMath::sqr(changes.x()));
-
   Derivative<3> H;
-  H.add(rolled, forward / dt);
-  H.add(vx, -aside * sideways);
-  H.add(vy, ahead * sideways);
-  H.add(wheels, -along * sideways);
+  H.add(vx, scale * ahead * forward - aside * sideways);
+  H.add(vy, scale * aside * forward + ahead * sideways);
+  H.add(speedScale, along * forward);
+  H.add(wheels, scale * across * forward - along * sideways);
   H.add(w, (1 + m_x(turnScale)) * turning);
   H.add(turnScale, m_x(w) * turning);
   H.add(turnBias, turning);
-  const Eigen::Vector3d sigma(odometryWay / dt, odometrySpeed, std::hypot(odometryTurnRate, share * sample.w));
-  const Eigen::Vector3d innovation(-m_x(rolled) / dt, -across,
+  // An error that changes from sample to sample averages out over samples, however long they are.
+  static const double nominal = 0.02; // s
+  const double share = odometryShare * std::sqrt(nominal / std::max(dt, 1e-3));
+  const Eigen::Vector3d sigma(std::hypot(odometrySpeed, share * sample.v), odometrySpeed,
+                              std::hypot(odometryTurnRate, share * sample.w));
+  // Where speeds change from sample to sample they do so within one.
+  static const double within = 0.3; // share of the change, standard deviation
+  const Eigen::Vector3d changes = within * Eigen::Vector3d(sample.v - before.v, 0, sample.w - before.w);
+  const Eigen::Vector3d innovation(sample.v - scale * along, -across,
                                    sample.w - (1 + m_x(turnScale)) * m_x(w) - m_x(turnBias)),
-      seen = innovation - this->aside(H),
-      noise = sigma.cwiseAbs2() + Eigen::Vector3d(0, 0, vpMath::sqr(changes.z()));
+      seen = innovation - this->aside(H), noise = sigma.cwiseAbs2() + changes.cwiseAbs2();
   Eigen::Matrix3d S = measure<3>(H, seen, noise.asDiagonal());
   // A steady motion has no changes, and wheels that start or stop do not do so sideways.
   S.diagonal() -= follows ? Eigen::Vector3d(0, starts, 0) : Eigen::Vector3d(changes.cwiseAbs2());

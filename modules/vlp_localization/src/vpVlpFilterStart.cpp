@@ -41,7 +41,6 @@ void vpVlpFilter::start(const vpHomogeneousMatrix &wMb, double time)
   sigma(turnScale) = odometryTurnScale;
   sigma(turnBias) = odometryTurnBias;
   sigma(wheels) = odometryHeading;
-  sigma(rolled) = odometryWay;
   sigma.segment<3>(mount) = rig.translationSigma;
   sigma(mount + 3) = rig.rotationSigma.z();
   const bool exact = m_extraTiltSigma == 0 && rig.rotationSigma.isZero(0) && rig.translationSigma.isZero(0);

@@ -124,11 +124,14 @@ void vpLampTracker::search(const vpVlpFrame &frame)
                                 [&place](const vpRect &box) { return overlap(box, place) > 0; }),
                  steady.end());
   };
-  auto shown = [this](const vpRect &window) { // the lamp that is expected there
+  auto shown = [this](const vpRect &window) { // the lamp that is expected there, or where its target is
     return std::any_of(m_observations.begin(), m_observations.end(),
                        [&window](const vpLampObservation &lamp) {
                          return window.isInside({lamp.outline.centre.y(), lamp.outline.centre.x()});
-                       });
+                       }) ||
+           std::any_of(m_tracks.begin(), m_tracks.end(), [this, &window](const Track &track) {
+             return track.fits && track.seenLast == m_time && window.isInside(track.window.getCenter());
+           });
   };
   for (size_t w = 0; w < strip; ++w) {
     static const double middle = -0.25; // of an expected window, which the lamp fills

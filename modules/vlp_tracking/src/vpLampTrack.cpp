@@ -43,7 +43,8 @@ bool vpLampTracker::Track::isElsewhere(const vpLampObservation &lamp) const
 //! no word, and is not as it was in the frame before, is a stranger.
 void vpLampTracker::Track::learn(const vpLampObservation &lamp, unsigned int enough, double minConfidence)
 {
-  if (!lamp.candidates.empty() || !lamp.features.chips.empty() || found) {
+  fits = !lamp.candidates.empty();
+  if (fits || !lamp.features.chips.empty() || found) {
     strange = 0;
   } else if (vpLedIdEvidence::tells(lamp.features)) {
     ++strange;

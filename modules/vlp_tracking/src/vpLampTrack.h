@@ -21,6 +21,7 @@ struct vpLampTracker::Track {
   vpImagePoint before;      // px, where its target was in the frame before
   double seenLast = 0;      // s
   vpRect told;              // px, where it blinked last
+  bool fits = false;        // a lamp of the map, as it was seen last
   unsigned int strange = 0; // frames in a row in which it fitted no lamp of the map
   bool taken = false;       // by an observation of the frame at hand
   vpRect place;             // px, where it was seen last

@@ -80,8 +80,7 @@ public:
   double startTurn = 0.3;      // rad, likewise of yaw
   double startVelocity = 0.2;  // m/s, likewise
   double startTurnRate = 1.5;  // rad/s, likewise
-  double odometryWay = 4e-5;       // m, standard deviation of all the way that samples tell: encoders count ticks
-  double odometrySpeed = 0.002;    // m/s, of a sample, sideways
+  double odometrySpeed = 0.002;    // m/s, standard deviation of a sample, along x and y: encoders count ticks
   double odometryShare = 0.01;     // likewise as a share of speed and turn rate: wheels slip now and then
   double odometryTurnRate = 0.005; // rad/s, likewise
   double odometryScale = 0.02;     // standard deviation of the speed's scale: a slip that stays
@@ -236,7 +235,6 @@ private:
     turnScale,
     turnBias,
     wheels,           // heading of what they call ahead, in b, rad
-    rolled,           // m, way of the wheels beyond what their samples have told
     mount,            // translation in b, m; heading about z of b
     lens = mount + 4, // principal point, in normalised coordinates; focal length, as a share
     mark0 = lens + 3, // x to pitch, at the mark
