@@ -94,8 +94,21 @@ void vpLampTracker::reacquire(const vpImage<unsigned char> &I)
   }
 }
 
-//! What reacquisition left open: lamps that were not found, and windows that show more than those that were.
-void vpLampTracker::search(const vpVlpFrame &frame)
+//! Whether the lamp that is expected in a window was reacquired, or its target is there, where it was seen
+//! last.
+bool vpLampTracker::shown(const vpRect &window) const
+{
+  return std::any_of(m_observations.begin(), m_observations.end(),
+                     [&window](const vpLampObservation &lamp) {
+                       return window.isInside({lamp.outline.centre.y(), lamp.outline.centre.x()});
+                     }) ||
+         std::any_of(m_tracks.begin(), m_tracks.end(), [this, &window](const Track &track) {
+           return track.fits && track.seenLast == m_time && window.isInside(track.window.getCenter());
+         });
+}
+
+//! What is to be searched, and what is known: lamps that were reacquired, and steady light.
+void vpLampTracker::openWindows(const vpVlpFrame &frame)
 {
   static const double halo = 0.1, beyond = 4, beyondSteady = 8; // of an extent; px
   std::vector<vpRect> &known = m_scratch->known, &open = m_scratch->open, &steady = m_scratch->steady,
@@ -111,29 +124,14 @@ void vpLampTracker::search(const vpVlpFrame &frame)
     known.push_back(around(boxOf(lamp.outline), beyond));
     noise = std::max(noise, lamp.noise);
   }
-  const size_t strip = m_searched.size() - 1;
-  askAgain(m_searched[strip], frame.timestamp);
+  const vpRect &strip = m_searched.back();
+  askAgain(strip, frame.timestamp);
   for (const Steady &each : m_steady) {
     if (!each.asked) {
       steady.push_back(around(each.box, beyondSteady));
     }
   }
-  // Where a lamp is expected, what told nothing of one may be a part of it.
-  auto forgetSteadyIn = [&steady](const vpRect &place) {
-    steady.erase(std::remove_if(steady.begin(), steady.end(),
-                                [&place](const vpRect &box) { return overlap(box, place) > 0; }),
-                 steady.end());
-  };
-  auto shown = [this](const vpRect &window) { // the lamp that is expected there, or where its target is
-    return std::any_of(m_observations.begin(), m_observations.end(),
-                       [&window](const vpLampObservation &lamp) {
-                         return window.isInside({lamp.outline.centre.y(), lamp.outline.centre.x()});
-                       }) ||
-           std::any_of(m_tracks.begin(), m_tracks.end(), [this, &window](const Track &track) {
-             return track.fits && track.seenLast == m_time && window.isInside(track.window.getCenter());
-           });
-  };
-  for (size_t w = 0; w < strip; ++w) {
+  for (size_t w = 0; w + 1 < m_searched.size(); ++w) {
     static const double middle = -0.25; // of an expected window, which the lamp fills
     const bool target = w < m_tracks.size();
     if (target ? m_tracks[w].taken : shown(m_searched[w])) {
@@ -146,33 +144,42 @@ void vpLampTracker::search(const vpVlpFrame &frame)
       }
     }
     open.push_back(m_searched[w]);
-    forgetSteadyIn(target ? m_tracks[w].window : widened(m_searched[w], middle));
+    // Where a lamp is expected, what told nothing of one may be a part of it.
+    const vpRect place = target ? m_tracks[w].window : widened(m_searched[w], middle);
+    steady.erase(std::remove_if(steady.begin(), steady.end(),
+                                [&place](const vpRect &box) { return overlap(box, place) > 0; }),
+                 steady.end());
   }
   known.insert(known.end(), steady.begin(), steady.end());
-  vpLedRoiDetector::otherLight(frame.I, m_searched[strip], known, noise, light);
+  vpLedRoiDetector::otherLight(frame.I, strip, known, noise, light);
   double area = 0; // that may have to be looked at for so many
   for (const vpRect &box : light) {
     area += std::pow(3 * std::max(box.getWidth(), box.getHeight()), 2);
   }
-  if (area > m_searched[strip].getWidth() * m_searched[strip].getHeight()) {
-    light.assign(1, m_searched[strip]);
+  if (area > strip.getWidth() * strip.getHeight()) {
+    light.assign(1, strip);
   }
   open.insert(open.end(), light.begin(), light.end());
-  if (open.empty()) {
+}
+
+//! What reacquisition left open: lamps that were not found, and windows that show more than those that were.
+void vpLampTracker::search(const vpVlpFrame &frame)
+{
+  openWindows(frame);
+  if (m_scratch->open.empty()) {
     return;
   }
-  detector.detect(frame.I, open, known);
-  const size_t reacquired = m_observations.size();
+  detector.detect(frame.I, m_scratch->open, m_scratch->known);
+  const auto reacquired = static_cast<long>(m_observations.size());
   for (const vpLampObservation &seen : detector.observations()) {
     const vpImagePoint middle(seen.outline.centre.y(), seen.outline.centre.x());
     const vpRect box = boxOf(seen.outline);
-    const bool twice =
-        std::any_of(m_observations.begin(), m_observations.begin() + static_cast<long>(reacquired),
-                    [&](const vpLampObservation &lamp) {
-                      static const double same = 0.3;
-                      const vpRect other = boxOf(lamp.outline);
-                      return other.isInside(middle) || overlap(box, other) > same;
-                    });
+    const bool twice = std::any_of(m_observations.begin(), m_observations.begin() + reacquired,
+                                   [&](const vpLampObservation &lamp) {
+                                     static const double same = 0.3;
+                                     const vpRect other = boxOf(lamp.outline);
+                                     return other.isInside(middle) || overlap(box, other) > same;
+                                   });
     if (!twice) {
       addObservation(seen);
       rememberSteady(seen, frame.timestamp);

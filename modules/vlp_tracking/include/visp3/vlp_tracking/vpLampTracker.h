@@ -101,6 +101,8 @@ private:
   bool reacquireAsExpected(Track &track, const vpImage<unsigned char> &I,
                            const std::vector<vpRect> &expected);
   void reacquire(const vpImage<unsigned char> &I);
+  bool shown(const vpRect &window) const;
+  void openWindows(const vpVlpFrame &frame);
   void search(const vpVlpFrame &frame);
   void searchAll(const vpVlpFrame &frame);
   size_t lampsInSight() const;
