@@ -102,7 +102,7 @@ const std::vector<vpLampObservation> &vpLampTracker::track(const vpVlpFrame &fra
       if (m_inSight < needed) { // it was not tried whether it is as it was
         track.strange = 0;
       } else if (track.strange > 0 && noLampSince(track.place, frame.timestamp) < frame.timestamp) {
-        track.strange += sure;
+        track.strange += sure; // it has been none before
       }
     }
   }

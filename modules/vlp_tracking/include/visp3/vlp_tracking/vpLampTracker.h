@@ -36,9 +36,9 @@ BEGIN_VISP_NAMESPACE
 
   Steady regions (windows, lamps without stripes) are found by the search and not followed. For a while their
   places are left out of the search, moved along with the lamps: for as long as they have been there, ten
-  times `steadiness` at most. Where a lamp is expected, they are looked at. So it is with what looks striped,
-  as the shade of a luminaire may. It has fitted no lamp of the map in more than `sure` frames, shows no word,
-  and cannot be reacquired.
+  times `steadiness` at most. Then one of them a frame is looked at again. Where a lamp is expected, all are.
+  What looks striped is passed over likewise, as the shade of a luminaire may. It has fitted no lamp of the
+  map in more than `sure` frames, shows no word, and cannot be reacquired.
 
   \code
   vpLampTracker tracker(rig, map);
